@@ -1,0 +1,135 @@
+#pragma once
+// A run is a value: scene in, frames out through a sink, progress and cancellation through a monitor.
+// The command line, the workers of the server and the tests all call `run`.
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "engine/plan/plan.hpp"
+#include "engine/scene/scene.hpp"
+
+namespace quicksand {
+
+/// One value per point; `values.size() == components * points`, point-major.
+struct FrameField {
+  std::string name;   ///< as in the result file, e.g. "pore_pressure"
+  std::string unit;
+  int components = 1; ///< 1, 3 (vectors, third zero in the plane) or 4/6 (xx yy zz xy [yz zx])
+  std::vector<float> values;
+};
+
+/// State of all points at one time. Point order is arbitrary but reproducible.
+struct Frame {
+  std::size_t index = 0;
+  double time = 0;  ///< s
+  std::string stage;
+  std::vector<double> position;       ///< m, 3 per point
+  std::vector<std::uint8_t> phase;    ///< 0 solid, 1 water
+  std::vector<std::int32_t> body;     ///< index into Scene::bodies
+  std::vector<FrameField> fields;     ///< only the fields asked for
+  std::size_t points() const { return phase.size(); }
+};
+
+struct SeriesInfo {
+  std::string name;  ///< "probe.<name>", "section.<name>", "body.<name>.rise", "ledger.water_volume", …
+  std::string unit;
+  int components = 1;
+};
+
+/// Receives results as the run goes. Called from one thread, in order of time. Implementations throw
+/// std::runtime_error when they cannot store (the run then ends as failed, code "output").
+class ResultSink {
+ public:
+  virtual ~ResultSink() = default;
+  virtual void begin(const std::vector<SeriesInfo>& series) = 0;
+  virtual void frame(const Frame& frame) = 0;
+  /// `values` holds every series' components one after the other, in the order of `begin`.
+  virtual void sample(double time, const std::vector<double>& values) = 0;
+};
+
+struct Progress {
+  double fraction = 0;     ///< 0…1 of simulated time
+  std::string stage;
+  double sim_time = 0, end_time = 0;  ///< s
+  long step = 0;
+  double time_step = 0;    ///< s, last
+  std::string bound;       ///< what limits it
+  std::size_t frames = 0;
+  double eta_s = 0;
+};
+
+/// Called after every step from the run's own thread; must be cheap.
+class RunMonitor {
+ public:
+  virtual ~RunMonitor() = default;
+  virtual void progress(const Progress&) {}
+  virtual void log(const std::string& /*line*/) {}
+  virtual bool cancelled() { return false; }
+};
+
+/// What was conserved, and everything that was done to the state other than by the equations.
+struct Ledger {
+  double water_mass_initial = 0, water_mass = 0;      ///< kg (per metre in the plane)
+  double solid_mass_initial = 0, solid_mass = 0;      ///< kg
+  double water_volume_initial = 0, water_volume = 0;  ///< m³, room filled by water below its surface
+  double water_volume_drift_max = 0;                  ///< largest |V − V0| / V0
+  std::array<double, 3> momentum_change{};            ///< N·s, Σ m v now less at the start
+  std::array<double, 3> impulse_gravity{}, impulse_walls{}, impulse_loads{};  ///< N·s
+  double momentum_residual = 0;   ///< |change − Σ impulses| / ∫|weight| dt
+  double energy_kinetic = 0, energy_potential = 0, energy_strain = 0;  ///< J
+  long clipped_points = 0;        ///< positions put back in front of a wall
+  long clamped_values = 0;
+  long deleted_points = 0;
+  long cut_steps = 0;             ///< steps repeated with a smaller time step
+};
+
+/// Headline figures of a watched body (Output::heave).
+struct HeaveReport {
+  bool moved = false;
+  double time = 0;               ///< s, when the mean rise passed the threshold
+  double head_difference = 0;    ///< m, between the probes at that time (else: largest seen)
+  double gradient = 0;           ///< –, head difference over the distance of the probes
+  double critical_gradient = 0;  ///< –, (1−n)(ρs/ρw − 1)
+  double final_rise = 0, max_rise = 0;  ///< m, mean upward movement of the body
+  double max_point_displacement = 0;    ///< m
+};
+
+struct Failure {
+  std::string code;     ///< "diverged", "output", "internal"
+  std::string message;  ///< when, where, which phase, likely cause, what to change
+  double time = 0;      ///< s
+  std::array<double, 3> place{};  ///< m
+};
+
+enum class RunStatus { succeeded, failed, canceled };
+
+struct PhaseTime {
+  std::string name;  ///< phase of the step: "to grid", "pressure", …
+  double seconds = 0;
+};
+
+struct RunReport {
+  RunStatus status = RunStatus::succeeded;
+  Failure failure;  ///< if failed
+  Ledger ledger;
+  std::vector<HeaveReport> heave;  ///< empty or one
+  double sim_time = 0, wall_seconds = 0, point_steps = 0;
+  long steps = 0;
+  double time_step_min = 0, time_step_max = 0;
+  std::vector<StepBound> steps_bound_by;  ///< name → simulated seconds spent under it
+  double pressure_iterations_mean = 0;
+  std::size_t frames = 0;
+  std::vector<PhaseTime> phases;
+};
+
+struct RunOptions {
+  int threads = 0;  ///< 0: all cores. Never changes the result.
+};
+
+/// Requires `check(scene)` to be empty. Never throws for what happens in the simulation; frames up to a
+/// failure or cancellation have reached the sink.
+RunReport run(const Scene& scene, ResultSink& sink, RunMonitor& monitor, const RunOptions& options = {});
+
+}  // namespace quicksand
