@@ -1,0 +1,31 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/plan/plan.hpp"
+#include "engine/run/run.hpp"
+#include "engine/scene/scene.hpp"
+
+namespace quicksand {
+
+struct ParsedCase {
+  std::optional<Scene> scene;  ///< set exactly when `faults` is empty
+  std::vector<Fault> faults;   ///< all of them: syntax, duplicate and unknown keys, types, ranges, check(scene)
+};
+
+/// Case text (`quicksand.case/1`) → Scene. `preset` replaces the case's own `numerics.preset`.
+ParsedCase parse_case(const std::string& text, const std::optional<Preset>& preset = {});
+
+/// The case with every default filled in (`cell_size` and preset choices included). Parsing it gives the
+/// same scene.
+std::string resolved_case(const Scene& scene);
+
+std::string plan_json(const Plan& plan);
+/// `run.json`: status, failure, plan, ledger, headline figures, cost.
+std::string report_json(const Scene& scene, const Plan& plan, const RunReport& report);
+
+/// The draft-07 schema, as shipped in api/case.schema.json (compiled in).
+const std::string& case_schema();
+
+}  // namespace quicksand

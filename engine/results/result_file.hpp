@@ -1,0 +1,37 @@
+#pragma once
+#include <map>
+#include <memory>
+#include <string>
+
+#include "engine/run/run.hpp"
+
+namespace quicksand {
+
+/// Writes a run's frames and series to `<folder>/result.vtkhdf` (VTKHDF 2.0 PolyData, temporal) and a
+/// generated `<folder>/result.xdmf`, as the run goes: after each `frame` the file is flushed and a kill −9
+/// leaves everything flushed so far readable. While open both carry the suffix `.part`; `close` renames
+/// them. One writer thread. All members throw std::runtime_error with the folder's file name, never its
+/// path, when the disk refuses.
+class ResultFile final : public ResultSink {
+ public:
+  /// `documents`: name → text stored under `/run/<name>` (case as given, case resolved, plan, …).
+  ResultFile(const std::string& folder, const std::map<std::string, std::string>& documents);
+  ~ResultFile() override;  ///< without `close`: leaves the `.part` files, readable
+  ResultFile(const ResultFile&) = delete;
+  ResultFile& operator=(const ResultFile&) = delete;
+
+  void begin(const std::vector<SeriesInfo>& series) override;
+  void frame(const Frame& frame) override;
+  void sample(double time, const std::vector<double>& values) override;
+
+  /// Adds or replaces `/run/<name>` (the final report), e.g. just before `close`.
+  void document(const std::string& name, const std::string& text);
+  /// Finishes the file and gives it its final name. No call is valid after it.
+  void close();
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace quicksand
