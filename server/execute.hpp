@@ -13,7 +13,7 @@ struct Execution {
   std::vector<Fault> faults;  ///< not empty: nothing was run and nothing written
   RunReport report;
 };
-Execution execute(const std::string& case_text, const std::optional<Preset>& preset, const std::string& folder,
-                  RunMonitor& monitor, const RunOptions& options);
+Execution execute(const std::string& case_text, const std::optional<Preset>& preset,
+                  const std::string& folder, RunMonitor& monitor, const RunOptions& options);
 
 }  // namespace quicksand

@@ -1,0 +1,95 @@
+#include <atomic>
+#include <csignal>
+#include <filesystem>
+#include <iostream>
+
+#include "api/case_json.hpp"
+#include "server/commands.hpp"
+#include "server/execute.hpp"
+#include "server/files.hpp"
+#include "server/headline.hpp"
+#include "server/progress_bar.hpp"
+
+namespace quicksand {
+namespace {
+
+/// Set by Ctrl-C; the run ends within one step and keeps what it has.
+std::atomic<bool> interrupted{false};
+static_assert(std::atomic<bool>::is_always_lock_free);  // a signal handler may set it
+
+class TerminalMonitor final : public RunMonitor {
+ public:
+  void progress(const Progress& now) override { bar_.draw(now); }
+  bool cancelled() override { return interrupted; }
+  void finish() { bar_.finish(); }
+
+ private:
+  ProgressBar bar_;
+};
+
+}  // namespace
+
+const char* preset_name(Preset preset) {
+  switch (preset) {
+    case Preset::draft:
+      return "draft";
+    case Preset::fine:
+      return "fine";
+    case Preset::standard:
+      break;
+  }
+  return "standard";
+}
+
+std::optional<std::string> read_case_file(const std::string& file) {
+  auto text = read_text(file);
+  if (!text) std::cerr << "cannot read " << file << '\n';
+  return text;
+}
+
+void print_faults(const std::string& what, const std::vector<Fault>& faults) {
+  std::cerr << what << " cannot be run:\n";
+  for (const Fault& fault : faults)
+    std::cerr << "  " << (fault.pointer.empty() ? "(whole case)" : fault.pointer) << ": " << fault.detail
+              << '\n';
+}
+
+int run_command(const RunCommand& command) {
+  const auto text = read_case_file(command.case_file);
+  if (!text) return exit_status::bad_input;
+  std::signal(SIGINT, [](int) { interrupted = true; });
+  std::signal(SIGTERM, [](int) { interrupted = true; });
+  Execution done;
+  {
+    TerminalMonitor monitor;
+    RunOptions options;
+    options.threads = command.threads;
+    done = execute(*text, command.preset, command.out, monitor, options);
+    monitor.finish();
+  }
+  if (!done.faults.empty()) {
+    print_faults(command.case_file, done.faults);
+    return exit_status::bad_input;
+  }
+  if (done.report.status == RunStatus::failed)
+    std::cerr << "failed (" << done.report.failure.code << "): " << done.report.failure.message << '\n';
+  if (done.report.status == RunStatus::failed && done.report.failure.code == "output")
+    return exit_status::not_written;
+  const auto report = read_text(std::filesystem::path(command.out) / "run.json");
+  if (report) std::cout << headline_text(*report) << files_text(command.out);
+  return done.report.status == RunStatus::succeeded ? exit_status::ok : exit_status::failed;
+}
+
+int check_command(const std::string& case_file) {
+  const auto text = read_case_file(case_file);
+  if (!text) return exit_status::bad_input;
+  const ParsedCase parsed = parse_case(*text);
+  if (!parsed.scene) {
+    print_faults(case_file, parsed.faults);
+    return exit_status::bad_input;
+  }
+  std::cout << plan_json(make_plan(*parsed.scene)) << '\n';
+  return exit_status::ok;
+}
+
+}  // namespace quicksand

@@ -1,0 +1,47 @@
+#pragma once
+// The sub-commands of `quicksand`. Each returns the process's exit status.
+
+#include <optional>
+#include <string>
+
+#include "engine/scene/scene.hpp"
+
+namespace quicksand {
+
+namespace exit_status {
+constexpr int ok = 0;
+constexpr int failed = 1;       ///< the run failed or was canceled, or the server refused
+constexpr int bad_input = 2;    ///< every fault of the case is on standard error
+constexpr int not_written = 3;  ///< the results could not be stored
+constexpr int no_server = 4;    ///< nobody answers at the URL
+}  // namespace exit_status
+
+struct RunCommand {
+  std::string case_file, out;
+  std::optional<Preset> preset;
+  int threads = 0;
+};
+int run_command(const RunCommand& command);
+
+int check_command(const std::string& case_file);
+
+struct SubmitCommand {
+  std::string case_file, url, label;
+  std::optional<Preset> preset;
+  bool wait = false;
+};
+int submit_command(const SubmitCommand& command);
+
+/// One run, or with an empty `id` the latest ones.
+int status_command(const std::string& url, const std::string& id);
+int fetch_command(const std::string& url, const std::string& id, const std::string& out);
+int cancel_command(const std::string& url, const std::string& id);
+
+/// "draft", "standard", "fine".
+const char* preset_name(Preset preset);
+
+/// Text of a case file; prints why and returns nothing when it cannot be read.
+std::optional<std::string> read_case_file(const std::string& file);
+void print_faults(const std::string& what, const std::vector<Fault>& faults);
+
+}  // namespace quicksand

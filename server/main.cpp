@@ -1,0 +1,140 @@
+// Wires the command line to the commands.
+
+#include <spdlog/sinks/stdout_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include <CLI/CLI.hpp>
+#include <iostream>
+
+#include "server/catalogue.hpp"
+#include "server/commands.hpp"
+#include "server/serve.hpp"
+#include "server/version.hpp"
+
+namespace quicksand {
+namespace {
+
+const std::map<std::string, Preset> presets{
+    {"draft", Preset::draft}, {"standard", Preset::standard}, {"fine", Preset::fine}};
+const std::map<std::string, spdlog::level::level_enum> log_levels{{"debug", spdlog::level::debug},
+                                                                  {"info", spdlog::level::info},
+                                                                  {"warning", spdlog::level::warn},
+                                                                  {"error", spdlog::level::err}};
+
+/// What the command line was read into, and the exit status of the chosen command.
+struct CommandLine {
+  RunCommand run;
+  std::string check_case;
+  SubmitCommand submit;
+  ServeOptions serve;
+  std::string port = "8080", id, out, url = "http://127.0.0.1:8080";
+  spdlog::level::level_enum log_level = spdlog::level::info;
+  int status = 0;
+};
+
+void add_url(CLI::App* command, CommandLine& line) {
+  command->add_option("--url", line.url, "the server")->envname("QUICKSAND_URL")->capture_default_str();
+}
+
+void add_preset(CLI::App* command, std::optional<Preset>& preset) {
+  command
+      ->add_option_function<std::string>(
+          "--preset", [&preset](const std::string& name) { preset = presets.at(name); },
+          "replaces the case's numerics.preset")
+      ->check(CLI::IsMember({"draft", "standard", "fine"}));
+}
+
+int start_server(CommandLine& line) {
+  auto log = spdlog::stderr_logger_mt("server");
+  log->set_pattern("%Y-%m-%dT%H:%M:%S.%eZ %l %v", spdlog::pattern_time_type::utc);
+  log->set_level(line.log_level);
+  spdlog::set_default_logger(log);
+  try {
+    line.serve.port = line.port == "auto" ? 0 : std::stoi(line.port);
+    serve(line.serve);
+    return exit_status::ok;
+  } catch (const std::exception& error) {
+    std::cerr << "cannot serve: " << error.what() << '\n';
+    return exit_status::failed;
+  }
+}
+
+void add_local_commands(CLI::App& app, CommandLine& line) {
+  CLI::App* run = app.add_subcommand("run", "compute a case here");
+  run->add_option("CASE", line.run.case_file, "case file (JSON)")->required();
+  run->add_option("--out", line.run.out, "folder of the results")->required();
+  add_preset(run, line.run.preset);
+  run->add_option("--threads", line.run.threads, "0: all cores")->check(CLI::Range(0, 1024));
+  run->callback([&line] { line.status = run_command(line.run); });
+
+  CLI::App* check = app.add_subcommand("check", "print what a case would compute, or its faults");
+  check->add_option("CASE", line.check_case, "case file (JSON)")->required();
+  check->callback([&line] { line.status = check_command(line.check_case); });
+}
+
+void add_serve_command(CLI::App& app, CommandLine& line) {
+  CLI::App* serve = app.add_subcommand("serve", "answer HTTP and compute what is submitted");
+  line.serve.cases = find_cases();
+  serve->add_option("--port", line.port, "TCP port; 0 or auto: the first free one from 8080")
+      ->check(CLI::Range(0, 65535) | CLI::IsMember({"auto"}))
+      ->capture_default_str();
+  serve->add_option("--state", line.serve.state, "folder of the runs and their records")->required();
+  serve->add_option("--host", line.serve.host, "address to listen at")->capture_default_str();
+  serve->add_option("--workers", line.serve.runner.workers, "runs computed at a time")
+      ->check(CLI::Range(1, 64))
+      ->capture_default_str();
+  serve->add_option("--threads", line.serve.runner.threads, "threads per run; 0: all cores")
+      ->check(CLI::Range(0, 1024));
+  serve->add_option("--cases", line.serve.cases, "folder of shipped cases")->check(CLI::ExistingDirectory);
+  serve->add_option("--log-level", line.log_level, "debug, info, warning or error")
+      ->transform(CLI::CheckedTransformer(log_levels));
+  serve->callback([&line] { line.status = start_server(line); });
+}
+
+void add_remote_commands(CLI::App& app, CommandLine& line) {
+  CLI::App* submit = app.add_subcommand("submit", "send a case to a server");
+  submit->add_option("CASE", line.submit.case_file, "case file (JSON)")->required();
+  add_url(submit, line);
+  add_preset(submit, line.submit.preset);
+  submit->add_option("--label", line.submit.label, "a word to find the run by");
+  submit->add_flag("--wait", line.submit.wait, "show progress until it ends");
+  submit->callback([&line] {
+    line.submit.url = line.url;
+    line.status = submit_command(line.submit);
+  });
+
+  CLI::App* status = app.add_subcommand("status", "show one run, or the latest ones");
+  status->add_option("ID", line.id, "run");
+  add_url(status, line);
+  status->callback([&line] { line.status = status_command(line.url, line.id); });
+
+  CLI::App* fetch = app.add_subcommand("fetch", "download the results of a run");
+  fetch->add_option("ID", line.id, "run")->required();
+  fetch->add_option("--out", line.out, "folder to put them in")->required();
+  add_url(fetch, line);
+  fetch->callback([&line] { line.status = fetch_command(line.url, line.id, line.out); });
+
+  CLI::App* cancel = app.add_subcommand("cancel", "end a run");
+  cancel->add_option("ID", line.id, "run")->required();
+  add_url(cancel, line);
+  cancel->callback([&line] { line.status = cancel_command(line.url, line.id); });
+}
+
+}  // namespace
+}  // namespace quicksand
+
+int main(int argc, char** argv) {
+  CLI::App app{"quicksand: material point simulation of saturated ground and free water"};
+  quicksand::CommandLine line;
+  app.set_version_flag("--version", std::string("quicksand ") + quicksand::engine_version);
+  app.require_subcommand(1);
+  quicksand::add_local_commands(app, line);
+  quicksand::add_serve_command(app, line);
+  quicksand::add_remote_commands(app, line);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? quicksand::exit_status::ok : quicksand::exit_status::bad_input;
+  }
+  return line.status;
+}

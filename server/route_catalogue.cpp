@@ -1,0 +1,68 @@
+#include <spdlog/spdlog.h>
+
+#include "api/case_json.hpp"
+#include "api/openapi.hpp"
+#include "server/http_problem.hpp"
+#include "server/route_handlers.hpp"
+#include "server/run_json.hpp"
+#include "server/version.hpp"
+
+namespace quicksand {
+
+void get_cases(Service& service, const Call&, httplib::Response& response) {
+  Json list = Json::array();
+  for (const auto& [name, shipped] : service.cases)
+    list.push_back({{"name", name}, {"description", shipped.description}, {"href", "/v1/cases/" + name}});
+  response.set_content(dump({{"cases", list}}), "application/json");
+}
+
+void get_case(Service& service, const Call& call, httplib::Response& response) {
+  const auto found = service.cases.find(call.captured.at(0));
+  if (found == service.cases.end()) fail(404, "no shipped case " + call.captured.at(0));
+  response.set_content(found->second.text, "application/json");
+}
+
+void get_case_schema(Service&, const Call&, httplib::Response& response) {
+  response.set_content(case_schema(), "application/schema+json");
+}
+
+void get_openapi(Service&, const Call&, httplib::Response& response) {
+  response.set_content(openapi_document(), "application/yaml");
+}
+
+void get_service_info(Service& service, const Call&, httplib::Response& response) {
+  const Limits& limits = service.limits;
+  response.set_content(dump({{"name", "quicksand"},
+                             {"version", engine_version},
+                             {"case_formats", {"quicksand.case/1"}},
+                             {"started", rfc3339(service.started)},
+                             {"workers", service.workers.workers},
+                             {"threads_per_run", service.workers.threads},
+                             {"runs",
+                              {{"queued", service.store.count(RunState::queued)},
+                               {"running", service.store.count(RunState::running)}}},
+                             {"limits",
+                              {{"max_body_bytes", limits.max_body_bytes},
+                               {"max_queued", limits.max_queued},
+                               {"max_page", limits.max_page},
+                               {"max_wait_s", limits.max_wait_s},
+                               {"max_waiters", limits.max_waiters}}}}),
+                       "application/json");
+}
+
+void get_healthz(Service&, const Call&, httplib::Response& response) {
+  response.set_content(R"({"status":"ok"})", "application/json");
+}
+
+void get_readyz(Service& service, const Call&, httplib::Response& response) {
+  if (service.stopping) fail(503, "the server stops");
+  try {
+    service.store.check_writable();
+  } catch (const std::exception& error) {
+    spdlog::error("not ready: {}", error.what());
+    fail(503, "the store cannot be written");
+  }
+  response.set_content(R"({"status":"ready"})", "application/json");
+}
+
+}  // namespace quicksand

@@ -1,0 +1,175 @@
+#include <spdlog/spdlog.h>
+#include <sys/sysinfo.h>
+
+#include <algorithm>
+#include <charconv>
+
+#include "api/case_json.hpp"
+#include "server/http_problem.hpp"
+#include "server/route_handlers.hpp"
+#include "server/run_json.hpp"
+#include "server/version.hpp"
+
+namespace quicksand {
+namespace {
+
+constexpr std::size_t max_label_bytes = 128;
+constexpr std::size_t max_key_bytes = 255;
+constexpr int default_page = 50;
+constexpr int full_retry_s = 60;  ///< s, `Retry-After` of a full queue
+
+struct PlannedCase {
+  Scene scene;
+  Plan plan;
+};
+
+/// Memory of this machine in bytes.
+double machine_memory() {
+  struct sysinfo facts {};
+  sysinfo(&facts);
+  return static_cast<double>(facts.totalram) * static_cast<double>(facts.mem_unit);
+}
+
+/// The body as a scene that this machine can run, or 422 with every fault.
+PlannedCase plan_case(const std::string& text) {
+  ParsedCase parsed = parse_case(text);
+  Problem problem;
+  problem.status = 422;
+  problem.detail = "the case cannot be run";
+  problem.errors = std::move(parsed.faults);
+  if (!parsed.scene) throw ProblemError{problem};
+  PlannedCase planned{*parsed.scene, make_plan(*parsed.scene)};
+  if (planned.plan.memory_bytes > machine_memory()) {
+    problem.errors = {
+        {"/domain/cell_size", "the run needs " + std::to_string(planned.plan.memory_bytes / 1e9) +
+                                  " GB of memory, more than this machine has; choose larger cells"}};
+    throw ProblemError{problem};
+  }
+  return planned;
+}
+
+std::string checked_label(const Call& call) {
+  const std::string label = call.parameter("label");
+  const bool printable = std::all_of(label.begin(), label.end(), [](unsigned char c) { return c >= ' '; });
+  if (label.size() > max_label_bytes || !printable)
+    fail(400, "label: at most " + std::to_string(max_label_bytes) + " bytes without control characters");
+  return label;
+}
+
+std::string checked_key(const Call& call) {
+  if (!call.request.has_header("Idempotency-Key")) return {};
+  const std::string key = call.request.get_header_value("Idempotency-Key");
+  const bool plain = std::all_of(key.begin(), key.end(), [](char c) { return c >= ' ' && c <= '~'; });
+  if (key.empty() || key.size() > max_key_bytes || !plain)
+    fail(400, "Idempotency-Key: 1 to " + std::to_string(max_key_bytes) + " printable ASCII characters");
+  return key;
+}
+
+template <typename Number>
+Number checked_number(const Call& call, const char* name, Number least, Number most, Number absent) {
+  if (!call.request.has_param(name)) return absent;
+  const std::string text = call.parameter(name);
+  Number number{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc{} || end != text.data() + text.size() || number < least || number > most)
+    fail(400, std::string(name) + ": a whole number from " + std::to_string(least) + " to " +
+                  std::to_string(most));
+  return number;
+}
+
+RunFilter checked_filter(const Call& call, const Limits& limits) {
+  RunFilter filter;
+  if (call.request.has_param("status")) {
+    filter.state = state_from_name(call.parameter("status"));
+    if (!filter.state) fail(400, "status: queued, running, canceling, succeeded, failed or canceled");
+  }
+  if (call.request.has_param("label")) filter.label = call.parameter("label");
+  if (call.request.has_param("name_prefix")) filter.name_prefix = call.parameter("name_prefix");
+  if (call.request.has_param("created_after")) {
+    filter.created_after = parse_rfc3339(call.parameter("created_after"));
+    if (!filter.created_after) fail(400, "created_after: a UTC time such as 2024-05-06T07:08:09Z");
+  }
+  if (call.request.has_param("page_token"))
+    filter.before_sequence = checked_number<long long>(call, "page_token", 1, INT64_MAX, 0);
+  filter.limit = checked_number<int>(call, "limit", 1, limits.max_page, default_page);
+  return filter;
+}
+
+}  // namespace
+
+StoredRun run_of(Service& service, const Call& call) {
+  auto run = service.store.find(call.captured.at(0));
+  if (!run) fail(404, "no run " + call.captured.at(0));
+  return *run;
+}
+
+void post_run(Service& service, const Call& call, httplib::Response& response) {
+  NewRun wanted;
+  wanted.label = checked_label(call);
+  wanted.idempotency_key = checked_key(call);
+  wanted.name = plan_case(call.request.body).scene.name;
+  wanted.case_text = call.request.body;
+  wanted.engine_version = engine_version;
+  const CreateOutcome outcome = service.store.create(wanted, service.limits.max_queued);
+  switch (outcome.kind) {
+    case CreateOutcome::Kind::conflict:
+      fail(422, "this Idempotency-Key was used for another case or label");
+    case CreateOutcome::Kind::full:
+      throw ProblemError{{503, "too many runs are queued", {}, {}, full_retry_s}};
+    case CreateOutcome::Kind::created:
+      spdlog::info("run={} queued name=\"{}\"", outcome.run->id, outcome.run->name);
+      service.runner.wake();
+      break;
+    case CreateOutcome::Kind::repeated:
+      break;
+  }
+  response.status = 201;
+  response.set_header("Location", "/v1/runs/" + outcome.run->id);
+  response.set_content(dump(run_json(*outcome.run)), "application/json");
+}
+
+void post_validate(Service&, const Call& call, httplib::Response& response) {
+  response.set_content(plan_json(plan_case(call.request.body).plan), "application/json");
+}
+
+void get_runs(Service& service, const Call& call, httplib::Response& response) {
+  RunFilter filter = checked_filter(call, service.limits);
+  const auto page = static_cast<std::size_t>(filter.limit);
+  ++filter.limit;  // one more tells whether there is a next page
+  std::vector<StoredRun> runs = service.store.list(filter);
+  Json next = nullptr;
+  if (runs.size() > page) {
+    runs.resize(page);
+    next = std::to_string(runs.back().sequence);
+  }
+  Json list = Json::array();
+  for (const StoredRun& run : runs) list.push_back(run_json(run));
+  response.set_content(dump({{"runs", list}, {"next_page_token", next}}), "application/json");
+}
+
+void post_cancel(Service& service, const Call& call, httplib::Response& response) {
+  const auto run = service.runner.cancel(call.captured.at(0));
+  if (!run) fail(404, "no run " + call.captured.at(0));
+  spdlog::info("run={} cancel asked for, now {}", run->id, state_name(run->state));
+  response.set_content(dump(run_json(*run)), "application/json");
+}
+
+void delete_run(Service& service, const Call& call, httplib::Response& response) {
+  const std::string& id = call.captured.at(0);
+  switch (service.store.remove(id)) {
+    case Store::Removal::unknown:
+      fail(404, "no run " + id);
+    case Store::Removal::active:
+      fail(409, "the run has not ended; cancel it first");
+    case Store::Removal::removed:
+      break;
+  }
+  std::error_code left_behind;  // removed at the next start
+  std::filesystem::remove_all(service.folder.run(id), left_behind);
+  if (left_behind) spdlog::warn("run={} its files could not be removed", id);
+  spdlog::info("run={} deleted", id);
+  service.bell.ring();
+  response.status = 204;
+}
+
+}  // namespace quicksand

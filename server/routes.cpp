@@ -1,0 +1,126 @@
+#include "server/routes.hpp"
+
+#include <SQLiteCpp/Exception.h>
+#include <spdlog/spdlog.h>
+#include <sqlite3.h>
+
+#include <algorithm>
+#include <set>
+
+#include "server/http_problem.hpp"
+#include "server/route_handlers.hpp"
+
+namespace quicksand {
+
+const std::vector<Route>& route_table() {
+  static const std::vector<Route> table{
+      {"POST", "/v1/runs", post_run, {"label"}, true},
+      {"GET",
+       "/v1/runs",
+       get_runs,
+       {"status", "label", "name_prefix", "created_after", "limit", "page_token"}},
+      {"GET", "/v1/runs/{id}", get_run, {}},
+      {"DELETE", "/v1/runs/{id}", delete_run, {}},
+      {"POST", "/v1/runs/{id}/cancel", post_cancel, {}},
+      {"GET", "/v1/runs/{id}/case", get_run_case, {}},
+      {"GET", "/v1/runs/{id}/log", get_run_log, {}},
+      {"GET", "/v1/runs/{id}/results", get_results, {}},
+      {"GET", "/v1/runs/{id}/results/{file}", get_result_file, {}},
+      {"POST", "/v1/validate", post_validate, {}, true},
+      {"GET", "/v1/cases", get_cases, {}},
+      {"GET", "/v1/cases/{name}", get_case, {}},
+      {"GET", "/v1/schemas/case", get_case_schema, {}},
+      {"GET", "/v1/openapi.yaml", get_openapi, {}},
+      {"GET", "/v1/service-info", get_service_info, {}},
+      {"GET", "/healthz", get_healthz, {}},
+      {"GET", "/readyz", get_readyz, {}},
+  };
+  return table;
+}
+
+namespace {
+
+std::vector<std::string> segments(const std::string& path) {
+  std::vector<std::string> parts;
+  for (std::size_t begin = 1; begin <= path.size();) {
+    const auto slash = std::min(path.find('/', begin), path.size());
+    parts.push_back(path.substr(begin, slash - begin));
+    begin = slash + 1;
+  }
+  return parts;
+}
+
+/// Whether `path` has the form of `pattern`; then `captured` holds its variable segments.
+bool matches(const std::string& pattern, const std::string& path, std::vector<std::string>& captured) {
+  const auto wanted = segments(pattern), given = segments(path);
+  if (wanted.size() != given.size()) return false;
+  captured.clear();
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    if (wanted[i].front() == '{' && !given[i].empty())
+      captured.push_back(given[i]);
+    else if (wanted[i] != given[i])
+      return false;
+  }
+  return true;
+}
+
+bool same_method(const std::string& route, const std::string& method) {
+  return route == method || (route == "GET" && method == "HEAD");
+}
+
+/// An input without effect is an error.
+void refuse_unknown_parameters(const Route& route, const httplib::Request& request) {
+  const auto& known = route.parameters;
+  for (const auto& [name, value] : request.params)
+    if (std::find(known.begin(), known.end(), name) == known.end())
+      fail(400, "unknown query parameter \"" + name + "\"");
+}
+
+Problem database_problem(const SQLite::Exception& error) {
+  Problem problem;
+  spdlog::error("store: {}", error.what());
+  if (error.getErrorCode() == SQLITE_FULL) problem = {507, "no space left for the run's record", {}, {}, 0};
+  if (error.getErrorCode() == SQLITE_BUSY) problem = {503, "the store is busy", {}, {}, 1};
+  return problem;
+}
+
+void call_route(Service& service, const httplib::Request& request, httplib::Response& response) {
+  RouteMatch match = find_route(request.method, request.path);
+  if (!match.route && match.allow.empty()) fail(404, "nothing at " + request.path);
+  if (!match.route) throw ProblemError{{405, request.method + " is not possible here", {}, match.allow, 0}};
+  refuse_unknown_parameters(*match.route, request);
+  match.route->handler(service, Call{request, std::move(match.captured)}, response);
+}
+
+}  // namespace
+
+RouteMatch find_route(const std::string& method, const std::string& path) {
+  RouteMatch match;
+  std::set<std::string> allowed;
+  for (const Route& route : route_table()) {
+    if (!matches(route.pattern, path, match.captured)) continue;
+    if (same_method(route.method, method)) {
+      match.route = &route;
+      return match;
+    }
+    allowed.insert(route.method);
+    if (route.method == std::string("GET")) allowed.insert("HEAD");
+  }
+  for (const std::string& name : allowed) match.allow += (match.allow.empty() ? "" : ", ") + name;
+  return match;
+}
+
+void dispatch(Service& service, const httplib::Request& request, httplib::Response& response) {
+  try {
+    call_route(service, request, response);
+  } catch (const ProblemError& error) {
+    answer(response, error.problem);
+  } catch (const SQLite::Exception& error) {
+    answer(response, database_problem(error));
+  } catch (const std::exception& error) {  // its text stays on our side
+    spdlog::error("{} {}: {}", request.method, request.path, error.what());
+    answer(response, Problem{});
+  }
+}
+
+}  // namespace quicksand

@@ -1,0 +1,49 @@
+#pragma once
+#include <spdlog/logger.h>
+
+#include <atomic>
+#include <chrono>
+#include <memory>
+#include <string>
+
+#include "engine/run/run.hpp"
+#include "server/change_bell.hpp"
+#include "server/state_folder.hpp"
+#include "server/store.hpp"
+
+namespace quicksand {
+
+/// `<runs>/<id>/run.log`: what happened in a run, every line with the run's id.
+std::filesystem::path run_log_file(const StateFolder& folder, const std::string& id);
+
+/// Carries a run's progress into the store, its words into its log and cancellation into the run.
+class StoreMonitor final : public RunMonitor {
+ public:
+  /// Progress is written at most this often, whatever the length of a step.
+  static constexpr std::chrono::milliseconds progress_interval{500};
+
+  /// `cancel` and `stopping` end the run within one step. Opens the log; throws spdlog::spdlog_ex when the
+  /// disk refuses.
+  StoreMonitor(const StoredRun& run, Store& store, const StateFolder& folder, ChangeBell& bell,
+               const std::atomic<bool>& cancel, const std::atomic<bool>& stopping);
+
+  void progress(const Progress& now) override;
+  void log(const std::string& line) override;
+  bool cancelled() override { return cancel_ || stopping_; }
+  /// Writes the last progress, which the throttle may have held back.
+  void flush();
+
+ private:
+  void store_progress();
+
+  std::string id_;
+  Store& store_;
+  ChangeBell& bell_;
+  const std::atomic<bool>&cancel_, &stopping_;
+  std::shared_ptr<spdlog::logger> log_;
+  Progress last_;
+  bool unwritten_ = false;
+  std::chrono::steady_clock::time_point next_write_{};
+};
+
+}  // namespace quicksand

@@ -1,0 +1,85 @@
+#include "server/serve.hpp"
+
+#include <pthread.h>
+#include <spdlog/spdlog.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <future>
+#include <iostream>
+#include <stdexcept>
+#include <thread>
+
+#include "server/http_server.hpp"
+#include "server/store.hpp"
+
+namespace quicksand {
+namespace {
+
+/// Within these the workers and then the connections must end; together less than the 10 s that a service
+/// manager is told to wait.
+constexpr std::chrono::milliseconds worker_patience{6000}, connection_patience{3000};
+
+/// Without keys anybody who reaches the port could run and read everything.
+void require_loopback(const std::string& host) {
+  if (host != "127.0.0.1" && host != "::1" && host != "localhost")
+    throw std::runtime_error(
+        "--host " + host + " refused: without API keys the server listens on this machine only (127.0.0.1)");
+}
+
+sigset_t stop_signals() {
+  sigset_t signals;
+  sigemptyset(&signals);
+  sigaddset(&signals, SIGTERM);
+  sigaddset(&signals, SIGINT);
+  return signals;
+}
+
+/// Ends the process without waiting for what does not end by itself; the store is in order at any time.
+[[noreturn]] void leave_now(StateFolder& folder) {
+  folder.withdraw();
+  spdlog::default_logger()->flush();
+  ::_exit(0);
+}
+
+}  // namespace
+
+void serve(const ServeOptions& options) {
+  require_loopback(options.host);
+  const sigset_t signals = stop_signals();
+  pthread_sigmask(SIG_BLOCK, &signals, nullptr);  // inherited by every thread; one of them waits for them
+
+  StateFolder folder(options.state);
+  Store store(folder.database());
+  ChangeBell bell;
+  Runner runner(store, folder, bell, options.runner);
+  Service service{store, runner, bell, folder, read_catalogue(options.cases), options.runner, {}};
+  HttpServer http(service);
+  const int port = http.bind(options.host, options.port);
+  const std::string host = options.host == "::1" ? "[::1]" : options.host;
+  const std::string url = "http://" + host + ":" + std::to_string(port);
+  runner.start();
+  folder.announce(url);
+  std::cout << "quicksand serves " << url << " state " << folder.path().string() << std::endl;
+
+  std::promise<void> connections_ended;
+  std::thread stopper([&, ended = connections_ended.get_future()] {
+    int signal = 0;
+    sigwait(&signals, &signal);
+    spdlog::info("signal {}, stopping", signal);
+    service.stopping = true;
+    bell.close();
+    runner.begin_stop();
+    http.stop();
+    if (!runner.wait_stopped(worker_patience)) leave_now(folder);
+    if (ended.wait_for(connection_patience) != std::future_status::ready) leave_now(folder);
+  });
+  http.serve();
+  connections_ended.set_value();
+  if (!service.stopping) ::kill(::getpid(), SIGTERM);  // the listening socket died by itself
+  stopper.join();
+}
+
+}  // namespace quicksand

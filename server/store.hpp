@@ -1,0 +1,115 @@
+#pragma once
+// What the server knows about its runs, in one SQLite file. Survives kill −9 at any moment: every change of
+// state is one transaction with synchronous=FULL. Progress alone is written with synchronous=NORMAL.
+
+#include <SQLiteCpp/Database.h>
+
+#include <filesystem>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/run/run.hpp"
+#include "server/clock.hpp"
+
+namespace quicksand {
+
+enum class RunState { queued, running, canceling, succeeded, failed, canceled };
+const char* state_name(RunState state);
+std::optional<RunState> state_from_name(const std::string& name);
+/// queued, running or canceling: the run's files may still change.
+bool is_active(RunState state);
+
+struct StoredRun {
+  long long sequence = 0;  ///< rises with creation
+  std::string id;
+  RunState state = RunState::queued;
+  std::string name, label;
+  std::string case_sha256, engine_version;
+  Milliseconds created = 0;
+  std::optional<Milliseconds> started, finished;
+  std::optional<Failure> failure;
+  std::string progress;    ///< JSON text; empty until the first step
+  int retries = 0;         ///< how often it was started again after a crash
+  long long revision = 0;  ///< rises with every change of this record
+};
+
+struct StoredResult {
+  std::string name;
+  std::uintmax_t bytes = 0;
+  std::string sha256;
+};
+
+struct NewRun {
+  std::string case_text, name, label, engine_version;
+  std::string idempotency_key;  ///< empty: none
+};
+
+struct CreateOutcome {
+  enum class Kind {
+    created,
+    repeated,  ///< same key and body: `run` is the earlier one
+    conflict,  ///< same key, other body or label
+    full,      ///< too many queued runs
+  } kind;
+  std::optional<StoredRun> run;
+};
+
+struct RunFilter {
+  std::optional<RunState> state;
+  std::optional<std::string> label, name_prefix;
+  std::optional<Milliseconds> created_after;
+  std::optional<long long> before_sequence;  ///< page: only older runs than this one
+  int limit = 50;
+};
+
+struct Recovery {
+  std::vector<std::string> requeued, interrupted, canceled;  ///< ids
+};
+
+/// Thread-safe. Members throw SQLite::Exception when the disk refuses.
+class Store {
+ public:
+  /// An idempotency key is remembered this long.
+  static constexpr Milliseconds idempotency_lifetime = 24LL * 3600 * 1000;
+
+  /// Opens or creates the file. Throws std::runtime_error when it was written by a newer version.
+  explicit Store(const std::filesystem::path& file, Clock clock = utc_now);
+
+  CreateOutcome create(const NewRun& run, int max_queued);
+  std::optional<StoredRun> find(const std::string& id);
+  std::optional<std::string> case_text(const std::string& id);
+  /// Newest first.
+  std::vector<StoredRun> list(const RunFilter& filter);
+  int count(RunState state);
+
+  /// The oldest queued run, now running; empty when nothing is queued.
+  std::optional<StoredRun> claim_next();
+  /// queued → canceled, running → canceling; others stay. Empty when there is no such run.
+  std::optional<StoredRun> request_cancel(const std::string& id);
+  void set_progress(const std::string& id, const std::string& json);
+  /// The run has ended; `results` are complete and will not change.
+  void finish(const std::string& id, RunState end, const std::optional<Failure>& failure,
+              const std::vector<StoredResult>& results);
+  /// running → queued, for a server that stops in good order.
+  void requeue(const std::string& id);
+  /// To be called once at start: what a killed server left running is queued again the first time and
+  /// failed with code "interrupted" the second; what it was canceling is canceled.
+  Recovery recover();
+
+  enum class Removal { removed, active, unknown };
+  Removal remove(const std::string& id);
+  std::vector<StoredResult> results(const std::string& id);
+  /// Throws when nothing can be written.
+  void check_writable();
+
+ private:
+  std::mutex mutex_;           ///< guards state_
+  SQLite::Database state_;     ///< synchronous=FULL
+  std::mutex progress_mutex_;  ///< guards progress_
+  SQLite::Database progress_;  ///< synchronous=NORMAL
+  Clock clock_;
+};
+
+}  // namespace quicksand
