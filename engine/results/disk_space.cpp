@@ -1,6 +1,7 @@
 #include "engine/results/disk_space.hpp"
 
 #include <fcntl.h>
+#include <sys/mman.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -37,6 +38,13 @@ void reserve_space(int file, std::size_t bytes) {
 
 void release_reserved(int file) {
   if (ftruncate(file, size_of(file)) != 0) refuse(errno);
+}
+
+void turn_into_memory(int file) {
+  const int memory = memfd_create("discarded", MFD_CLOEXEC);
+  if (memory < 0) return;
+  dup3(memory, file, O_CLOEXEC);
+  close(memory);
 }
 
 }  // namespace quicksand

@@ -11,4 +11,8 @@ void reserve_space(int file, std::size_t bytes);
 /// Gives back what was reserved past the end of the file.
 void release_reserved(int file);
 
+/// Lets `file` refer to memory from now on: what is on disk stays as it is, and every later write succeeds
+/// and is forgotten. For a library that goes on writing when it is told to give up a file.
+void turn_into_memory(int file);
+
 }  // namespace quicksand

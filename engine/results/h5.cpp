@@ -7,6 +7,11 @@
 namespace quicksand::h5 {
 namespace {
 
+// HDF5 1.10.8 cannot close a file whose flush failed: it frees the file but keeps its identifier, and its
+// exit handler then touches freed memory. Every file here is closed by its owner, so there is no need of the
+// handler.
+[[maybe_unused]] const herr_t without_exit_handler = H5dont_atexit();
+
 constexpr unsigned gzip_level = 1;  // level 4 costs 40 % of the speed and saves 2–6 %
 
 // HDF5 reports system errors as "…, errno = 28, error message = 'No space left on device', …".

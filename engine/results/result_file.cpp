@@ -22,8 +22,9 @@ constexpr const char* data_name = "result.vtkhdf";
 constexpr const char* view_name = "result.xdmf";
 constexpr const char* unfinished = ".part";
 
-// Room for what HDF5 writes besides the points: headers, indices and the views of one frame (some 20 kB).
-constexpr std::size_t bookkeeping_bytes = 512 * 1024;
+// Room for what HDF5 writes besides the points of a frame: chunk indices that split, views, names (some 20 kB
+// as a rule), and besides the text of a document.
+constexpr std::size_t frame_bookkeeping_bytes = 512 * 1024, bookkeeping_bytes = 32 * 1024;
 // Room for a growing series that starts a chunk, per series.
 constexpr std::size_t chunk_of_series_bytes = 16 * 1024;
 // Samples kept in memory between frames before they are stored.
@@ -118,7 +119,7 @@ struct ResultFile::State {
   State(const std::string& to, const std::map<std::string, std::string>& documents) : folder(to) {
     file = create_file((folder / (std::string(data_name) + unfinished)).string());
     std::size_t bytes = 0;
-    for (const auto& [name, text] : documents) bytes += text.size();
+    for (const auto& [name, text] : documents) bytes += text.size() + bookkeeping_bytes;
     store(bytes, [&] {
       run = h5::create_group(file.get(), "run");
       for (const auto& [name, text] : documents) h5::put_text(run.get(), name, text);
@@ -136,12 +137,17 @@ struct ResultFile::State {
   void store(std::size_t bytes, Work&& work) {
     if (broken) throw std::runtime_error("an earlier write failed");
     std::size_t samples = 0;
-    if (series) samples = series->kept() * series->sample_bytes() + series->count() * chunk_of_series_bytes;
-    reserve_space(descriptor(file), bytes + samples + bookkeeping_bytes);
-    broken = true;
-    work();
-    flush();
-    broken = false;
+    if (series && series->kept() > 0)
+      samples = series->kept() * series->sample_bytes() + series->count() * chunk_of_series_bytes;
+    reserve_space(descriptor(file), bytes + samples);
+    try {
+      work();
+      flush();
+    } catch (...) {
+      broken = true;
+      turn_into_memory(descriptor(file));
+      throw;
+    }
     release_reserved(descriptor(file));
   }
 
@@ -185,7 +191,7 @@ void ResultFile::begin(const std::vector<SeriesInfo>& series) {
 
 void ResultFile::frame(const Frame& frame) {
   naming_the_file([&] {
-    state_->store(frame_bytes(frame), [&] { state_->put_frame(frame); });
+    state_->store(frame_bytes(frame) + frame_bookkeeping_bytes, [&] { state_->put_frame(frame); });
     state_->xdmf->add(frame, "/frames/" + frame_name(frame.index));
   });
 }
@@ -194,17 +200,20 @@ void ResultFile::sample(double time, const std::vector<double>& values) {
   naming_the_file([&] {
     if (!state_->series) throw std::logic_error("sample before begin");
     state_->series->sample(time, values);
-    if (state_->series->kept() >= most_kept_samples) state_->store(0, [&] { state_->series->store(); });
+    if (state_->series->kept() >= most_kept_samples)
+      state_->store(bookkeeping_bytes, [&] { state_->series->store(); });
   });
 }
 
 void ResultFile::document(const std::string& name, const std::string& text) {
-  naming_the_file([&] { state_->store(text.size(), [&] { h5::put_text(state_->run.get(), name, text); }); });
+  naming_the_file([&] {
+    state_->store(text.size() + bookkeeping_bytes, [&] { h5::put_text(state_->run.get(), name, text); });
+  });
 }
 
 void ResultFile::close() {
   naming_the_file([&] {
-    state_->store(0, [&] {
+    state_->store(bookkeeping_bytes, [&] {
       if (state_->series) state_->series->store();
     });
     state_->finish();
