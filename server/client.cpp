@@ -117,7 +117,8 @@ RemoteRun Client::wait(const std::string& id, const std::function<void(const Rem
 std::vector<StoredResult> Client::results(const std::string& id) {
   const auto answer = checked(http_.Get("/v1/runs/" + id + "/results"));
   std::vector<StoredResult> results;
-  for (const Json& result : Json::parse(answer->body).at("results"))
+  const Json json = Json::parse(answer->body);
+  for (const Json& result : json.at("results"))
     results.push_back({result.at("name"), result.at("bytes"), result.at("sha256")});
   return results;
 }

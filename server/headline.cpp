@@ -17,11 +17,16 @@ double number(const Json& json, const char* key) {
   return found != json.end() && found->is_number() ? found->get<double>() : NAN;
 }
 
+std::string word(const Json& json, const char* key) {
+  const auto found = json.find(key);
+  return found != json.end() && found->is_string() ? found->get<std::string>() : "?";
+}
+
 std::string heave_text(const Json& heave) {
   const double moved_at = number(heave, "time"), head = number(heave, "head_difference"),
                gradient = number(heave, "gradient"), critical = number(heave, "critical_gradient");
   std::string text;
-  if (heave.value("moved", false))
+  if (heave.find("moved") != heave.end() && heave["moved"] == true)
     text +=
         fmt::format("  The sand moved at t = {:.3g} s.\n  Then: head difference {:.3g} m", moved_at, head);
   else
@@ -46,7 +51,7 @@ std::string cost_text(const Json& report) {
 std::string headline_text(const std::string& report) {
   const Json json = Json::parse(report, nullptr, false);
   if (!json.is_object()) return "run.json cannot be read\n";
-  std::string text = fmt::format("{}: {}\n", json.value("name", "run"), json.value("status", "?"));
+  std::string text = fmt::format("{}: {}\n", word(json, "name"), word(json, "status"));
   if (const auto heave = json.find("headline"); heave != json.end() && heave->is_object())
     text += heave_text(*heave);
   if (const auto ledger = json.find("ledger"); ledger != json.end() && ledger->is_object())

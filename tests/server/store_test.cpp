@@ -1,0 +1,239 @@
+#include "server/store.hpp"
+
+#include <gtest/gtest.h>
+
+#include <thread>
+
+#include "server/sha256.hpp"
+#include "tests/server/temporary_folder.hpp"
+
+namespace quicksand {
+namespace {
+
+constexpr int roomy = 1000;
+
+class StoreTest : public testing::Test {
+ protected:
+  NewRun new_run(const std::string& text, const std::string& key = "", const std::string& label = "") {
+    return {text, "name of " + text, label, "0.1.0", key};
+  }
+  std::string queue(const std::string& text) { return store_.create(new_run(text), roomy).run->id; }
+  RunState state(const std::string& id) { return store_.find(id)->state; }
+
+  TemporaryFolder folder_;
+  Milliseconds now_ = 1'700'000'000'000;
+  std::filesystem::path file_ = folder_.path() / "quicksand.db";
+  Store store_{file_, [this] { return now_; }};
+};
+
+TEST_F(StoreTest, KeepsWhatWasAskedFor) {
+  const auto run = store_.create(new_run("{}", "", "nightly"), roomy).run;
+  ASSERT_TRUE(run);
+  EXPECT_EQ(run->state, RunState::queued);
+  EXPECT_EQ(run->name, "name of {}");
+  EXPECT_EQ(run->label, "nightly");
+  EXPECT_EQ(run->created, now_);
+  EXPECT_FALSE(run->started);
+  EXPECT_EQ(run->case_sha256, "44136fa355b3678a1146ad16f7e8649e94fb4fc21fe77e8310c060f61caaff8a");
+  EXPECT_EQ(store_.case_text(run->id), "{}");
+  EXPECT_FALSE(store_.case_text("0000"));
+}
+
+TEST_F(StoreTest, RunsInOrderOfSubmission) {
+  const std::string first = queue("a"), second = queue("b");
+  EXPECT_EQ(store_.claim_next()->id, first);
+  EXPECT_EQ(store_.claim_next()->id, second);
+  EXPECT_FALSE(store_.claim_next());
+}
+
+TEST_F(StoreTest, WalksThroughItsStates) {
+  const std::string id = queue("a");
+  now_ += 5;
+  const auto claimed = store_.claim_next();
+  EXPECT_EQ(claimed->state, RunState::running);
+  EXPECT_EQ(claimed->started, now_);
+  store_.set_progress(id, R"({"fraction":0.5})");
+  EXPECT_EQ(store_.find(id)->progress, R"({"fraction":0.5})");
+  EXPECT_GT(store_.find(id)->revision, claimed->revision);
+  now_ += 5;
+  store_.finish(id, RunState::succeeded, {}, {{"result.vtkhdf", 12, "ab"}});
+  EXPECT_EQ(state(id), RunState::succeeded);
+  EXPECT_EQ(store_.find(id)->finished, now_);
+  ASSERT_EQ(store_.results(id).size(), 1u);
+  EXPECT_EQ(store_.results(id)[0].bytes, 12u);
+}
+
+TEST_F(StoreTest, KeepsTheDiagnosisOfAFailure) {
+  const std::string id = queue("a");
+  store_.claim_next();
+  store_.finish(id, RunState::failed, Failure{"diverged", "too fast", 1.5, {1, 2, 3}}, {});
+  const auto failure = store_.find(id)->failure;
+  ASSERT_TRUE(failure);
+  EXPECT_EQ(failure->code, "diverged");
+  EXPECT_EQ(failure->message, "too fast");
+  EXPECT_EQ(failure->time, 1.5);
+  EXPECT_EQ(failure->place[2], 3);
+}
+
+TEST_F(StoreTest, ProgressAfterTheEndIsIgnored) {
+  const std::string id = queue("a");
+  store_.claim_next();
+  store_.finish(id, RunState::succeeded, {}, {});
+  store_.set_progress(id, "{}");
+  EXPECT_EQ(store_.find(id)->progress, "");
+}
+
+TEST_F(StoreTest, CancelDependsOnTheState) {
+  const std::string running = queue("a"), queued = queue("b");
+  store_.claim_next();
+  EXPECT_EQ(store_.request_cancel(running)->state, RunState::canceling);
+  EXPECT_EQ(store_.request_cancel(running)->state, RunState::canceling);
+  EXPECT_EQ(store_.request_cancel(queued)->state, RunState::canceled);
+  EXPECT_EQ(store_.request_cancel(queued)->state, RunState::canceled);
+  EXPECT_FALSE(store_.request_cancel("0000"));
+  EXPECT_FALSE(store_.claim_next());
+}
+
+TEST_F(StoreTest, RemovesOnlyWhatHasEnded) {
+  const std::string id = queue("a");
+  EXPECT_EQ(store_.remove(id), Store::Removal::active);
+  store_.claim_next();
+  EXPECT_EQ(store_.remove(id), Store::Removal::active);
+  store_.finish(id, RunState::succeeded, {}, {{"run.json", 1, "ab"}});
+  EXPECT_EQ(store_.remove(id), Store::Removal::removed);
+  EXPECT_EQ(store_.remove(id), Store::Removal::unknown);
+  EXPECT_TRUE(store_.results(id).empty());
+}
+
+TEST_F(StoreTest, SameKeyAndBodyIsTheSameRun) {
+  const auto first = store_.create(new_run("a", "key"), roomy);
+  const auto again = store_.create(new_run("a", "key"), roomy);
+  EXPECT_EQ(again.kind, CreateOutcome::Kind::repeated);
+  EXPECT_EQ(again.run->id, first.run->id);
+  EXPECT_EQ(store_.create(new_run("b", "key"), roomy).kind, CreateOutcome::Kind::conflict);
+  EXPECT_EQ(store_.create(new_run("a", "key", "label"), roomy).kind, CreateOutcome::Kind::conflict);
+  EXPECT_EQ(store_.create(new_run("a", "other"), roomy).kind, CreateOutcome::Kind::created);
+  EXPECT_EQ(store_.count(RunState::queued), 2);
+}
+
+TEST_F(StoreTest, KeysAreForgottenAfterADay) {
+  store_.create(new_run("a", "key"), roomy);
+  now_ += Store::idempotency_lifetime - 1;
+  EXPECT_EQ(store_.create(new_run("b", "key"), roomy).kind, CreateOutcome::Kind::conflict);
+  now_ += 1;
+  EXPECT_EQ(store_.create(new_run("b", "key"), roomy).kind, CreateOutcome::Kind::created);
+}
+
+TEST_F(StoreTest, AFullQueueRefuses) {
+  queue("a");
+  EXPECT_EQ(store_.create(new_run("b"), 1).kind, CreateOutcome::Kind::full);
+  EXPECT_EQ(store_.count(RunState::queued), 1);
+}
+
+TEST_F(StoreTest, ListsNewestFirstAndFilters) {
+  const std::string a = queue("a");
+  now_ += 1000;
+  const std::string b = store_.create(new_run("b", "", "tagged"), roomy).run->id;
+  const auto ids = [&](const RunFilter& filter) {
+    std::vector<std::string> found;
+    for (const StoredRun& run : store_.list(filter)) found.push_back(run.id);
+    return found;
+  };
+  using Ids = std::vector<std::string>;
+  RunFilter filter;
+  EXPECT_EQ(ids(filter), (Ids{b, a}));
+  filter.limit = 1;
+  EXPECT_EQ(ids(filter), (Ids{b}));
+  filter.before_sequence = store_.find(b)->sequence;
+  EXPECT_EQ(ids(filter), (Ids{a}));
+  filter = {};
+  filter.label = "tagged";
+  EXPECT_EQ(ids(filter), (Ids{b}));
+  filter = {};
+  filter.name_prefix = "name of a";
+  EXPECT_EQ(ids(filter), (Ids{a}));
+  filter.name_prefix = "name%";  // no wildcards
+  EXPECT_EQ(ids(filter), (Ids{}));
+  filter = {};
+  filter.created_after = now_ - 1;
+  EXPECT_EQ(ids(filter), (Ids{b}));
+  filter = {};
+  filter.state = RunState::running;
+  EXPECT_EQ(ids(filter), (Ids{}));
+}
+
+TEST_F(StoreTest, RecoversWhatAKillLeftBehind) {
+  const std::string running = queue("a"), canceling = queue("b"), queued = queue("c");
+  store_.claim_next();
+  store_.claim_next();
+  store_.set_progress(running, "{}");
+  store_.request_cancel(canceling);
+
+  Store restarted(file_, [this] { return now_; });
+  const Recovery first = restarted.recover();
+  EXPECT_EQ(first.requeued, std::vector<std::string>{running});
+  EXPECT_EQ(first.canceled, std::vector<std::string>{canceling});
+  EXPECT_EQ(state(running), RunState::queued);
+  EXPECT_EQ(store_.find(running)->progress, "");
+  EXPECT_FALSE(store_.find(running)->started);
+  EXPECT_EQ(state(canceling), RunState::canceled);
+  EXPECT_EQ(state(queued), RunState::queued);
+
+  EXPECT_EQ(restarted.claim_next()->id, running);
+  const Recovery second = restarted.recover();
+  EXPECT_EQ(second.interrupted, std::vector<std::string>{running});
+  EXPECT_EQ(state(running), RunState::failed);
+  EXPECT_EQ(store_.find(running)->failure->code, "interrupted");
+}
+
+TEST_F(StoreTest, AnOrderlyStopCostsNoRetry) {
+  const std::string id = queue("a");
+  store_.claim_next();
+  store_.requeue(id);
+  EXPECT_EQ(state(id), RunState::queued);
+  EXPECT_EQ(store_.find(id)->retries, 0);
+}
+
+TEST_F(StoreTest, ACanceledRunIsNotQueuedAgain) {
+  const std::string id = queue("a");
+  store_.claim_next();
+  store_.request_cancel(id);
+  store_.requeue(id);
+  EXPECT_EQ(state(id), RunState::canceling);
+}
+
+TEST_F(StoreTest, RefusesTheFileOfANewerVersion) {
+  {
+    SQLite::Database database(file_.string(), SQLite::OPEN_READWRITE);
+    database.exec("PRAGMA user_version = 99");
+  }
+  EXPECT_THROW(Store{file_}, std::runtime_error);
+}
+
+TEST_F(StoreTest, ManyThreadsLoseNothing) {
+  constexpr int threads = 4, each = 25;
+  std::vector<std::thread> writers;
+  for (int t = 0; t < threads; ++t)
+    writers.emplace_back([&, t] {
+      Store own(file_);  // as another process would
+      for (int i = 0; i < each; ++i) own.create(new_run(std::to_string(t * each + i)), roomy);
+    });
+  for (std::thread& writer : writers) writer.join();
+  EXPECT_EQ(store_.count(RunState::queued), threads * each);
+}
+
+TEST(Sha256, MatchesThePublishedVector) {  // FIPS 180-2, appendix B.1
+  EXPECT_EQ(sha256_text("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+}
+
+TEST(ClockTest, WritesAndReadsRfc3339) {
+  EXPECT_EQ(rfc3339(0), "1970-01-01T00:00:00.000Z");
+  EXPECT_EQ(rfc3339(1'700'000'000'042), "2023-11-14T22:13:20.042Z");
+  EXPECT_EQ(parse_rfc3339("2023-11-14T22:13:20.042Z"), 1'700'000'000'042);
+  EXPECT_EQ(parse_rfc3339("2023-11-14T22:13:20Z"), 1'700'000'000'000);
+  for (const char* wrong : {"", "2023-11-14", "2023-11-14T22:13:20", "2023-11-14T22:13:20Zx", "yesterday"})
+    EXPECT_FALSE(parse_rfc3339(wrong)) << wrong;
+}
+
+}  // namespace
+}  // namespace quicksand
