@@ -1,0 +1,133 @@
+#include "api/idle_keys.hpp"
+
+#include <algorithm>
+#include <initializer_list>
+
+namespace quicksand {
+namespace {
+
+using Keys = std::initializer_list<const char*>;
+
+void idle(const Place& place, Keys keys, const std::string& why) {
+  for (const char* key : keys)
+    if (const Place given = place[key]; given.given())
+      given.reading().refuse(given.pointer(), "has no effect " + why + ": remove it");
+}
+
+void needed(const Place& place, Keys keys, const std::string& why) {
+  for (const char* key : keys)
+    if (const Place absent = place[key]; !absent.given() && !absent.refused())
+      absent.reading().refuse(absent.pointer(), "is missing: needed " + why);
+}
+
+/// "with kind traction"
+template <typename Choice>
+std::string with(const char* key, Choice choice) {
+  return std::string("with ") + key + " " + word_of(choice);
+}
+
+void check_sides(const Place& sides, const Domain& domain) {
+  if (domain.dimension != Dimension::space) idle(sides, {"front", "back"}, "in the plane");
+  for (std::size_t k = 0; k < side_words.size(); ++k) {
+    const Place side = sides[side_words[k]];
+    if (!side.given() || side["kind"].refused()) continue;
+    if (domain.sides[k].kind == SideKind::reservoir)
+      needed(side, {"head"}, with("kind", domain.sides[k].kind));
+    else
+      idle(side, {"head"}, with("kind", domain.sides[k].kind));
+  }
+}
+
+void check_permeability(const Place& soil, PermeabilityLaw law, bool water) {
+  const Place place = soil["permeability"];
+  if (!water) return idle(soil, {"permeability"}, "in a scene without water");
+  needed(soil, {"permeability"}, "in a scene with water");
+  if (!place.given() || place["law"].refused()) return;
+  const bool ergun = law == PermeabilityLaw::ergun;
+  needed(place, {ergun ? "grain_size" : "value"}, with("law", law));
+  idle(place, {ergun ? "value" : "grain_size"}, with("law", law));
+}
+
+void check_model(const Place& model, SoilLaw law) {
+  if (!model.given() || model["law"].refused()) return;
+  if (law == SoilLaw::mohr_coulomb) needed(model, {"friction_angle"}, with("law", law));
+  if (law == SoilLaw::linear_elastic)
+    idle(model, {"friction_angle", "dilation_angle", "cohesion", "tension_cutoff"}, with("law", law));
+}
+
+void check_body(const Place& place, const Body& body) {
+  if (place["kind"].refused()) return;
+  if (body.kind == BodyKind::water) return idle(place, {"soil", "fixed"}, with("kind", body.kind));
+  needed(place, {"soil"}, with("kind", body.kind));
+  if (body.fixed) idle(place, {"velocity"}, "on a fixed body");
+}
+
+void check_initial(const Place& place, const Initial& initial, bool water, bool soil) {
+  if (!water) idle(place, {"pressure", "water_table", "uniform_pressure"}, "in a scene without water");
+  if (!soil) idle(place, {"stress", "k0", "uniform_stress"}, "in a scene without soil");
+  if (water && !place["pressure"].refused()) {
+    const std::string why = with("pressure", initial.pressure);
+    if (initial.pressure != InitialPressure::hydrostatic) idle(place, {"water_table"}, why);
+    if (initial.pressure != InitialPressure::uniform) idle(place, {"uniform_pressure"}, why);
+    else needed(place, {"uniform_pressure"}, why);
+  }
+  if (soil && !place["stress"].refused()) {
+    const std::string why = with("stress", initial.stress);
+    if (initial.stress != InitialStress::k0) idle(place, {"k0"}, why);
+    if (initial.stress != InitialStress::uniform) idle(place, {"uniform_stress"}, why);
+    else needed(place, {"uniform_stress"}, why);
+  }
+}
+
+void check_load(const Place& place, const Load& load) {
+  if (place["kind"].refused()) return;
+  const std::string why = with("kind", load.kind);
+  if (load.kind == Load::Kind::traction) {
+    needed(place, {"traction"}, why);
+    return idle(place, {"plate", "plate_velocity", "plate_force", "rough"}, why);
+  }
+  needed(place, {"plate"}, why);
+  idle(place, {"traction"}, why);
+  if (load.plate_force) idle(place, {"plate_velocity"}, "with plate_force");
+  else needed(place, {"plate_velocity"}, "without plate_force");
+}
+
+void check_numerics(const Place& place, const Numerics& numerics, bool water) {
+  if (numerics.transfer != Transfer::flip) idle(place, {"pic_rate"}, with("transfer", numerics.transfer));
+  if (numerics.time_step) idle(place, {"time_step_factor"}, "with a fixed time_step");
+  if (!water) return idle(place, {"pressure", "pressure_tolerance", "drift_time"}, "in a scene without water");
+  if (numerics.pressure != PressureScheme::implicit)
+    idle(place, {"pressure_tolerance"}, with("pressure", numerics.pressure));
+}
+
+}  // namespace
+
+bool has_water(const Scene& scene) {
+  return std::any_of(scene.bodies.begin(), scene.bodies.end(), [](const Body& b) { return b.kind != BodyKind::soil; });
+}
+
+bool has_soil(const Scene& scene) {
+  return std::any_of(scene.bodies.begin(), scene.bodies.end(), [](const Body& b) { return b.kind != BodyKind::water; });
+}
+
+void check_choices(const nlohmann::json& document, const Scene& scene, Reading& reading) {
+  const Place root(document, reading);
+  const bool water = has_water(scene), soil = has_soil(scene);
+  check_sides(root["domain"]["sides"], scene.domain);
+  for (const auto& [name, place] : root["materials"]["soils"].items()) {
+    if (!place.given()) continue;
+    check_permeability(place, scene.soils.at(name).permeability.law, water);
+    check_model(place["model"], scene.soils.at(name).model.law);
+  }
+  if (!water) idle(root["materials"], {"water"}, "in a scene without water");
+  const auto bodies = root["bodies"].items();
+  for (std::size_t k = 0; k < bodies.size(); ++k) check_body(bodies[k].second, scene.bodies[k]);
+  check_initial(root["initial"], scene.initial, water, soil);
+  const auto loads = root["loads"].items();
+  for (std::size_t k = 0; k < loads.size(); ++k) check_load(loads[k].second, scene.loads[k]);
+  for (const auto& [index, stage] : root["stages"].items())
+    if (!soil) idle(stage, {"damping"}, "in a scene without soil");
+  check_numerics(root["numerics"], scene.numerics, water);
+}
+
+}  // namespace quicksand

@@ -1,0 +1,82 @@
+#include "engine/scene/check.hpp"
+
+#include <algorithm>
+#include <charconv>
+
+#include "engine/scene/check_parts.hpp"
+
+namespace quicksand {
+
+std::string escaped(const std::string& name) {
+  std::string step;
+  for (const char c : name) step += c == '~' ? "~0" : c == '/' ? "~1" : std::string(1, c);
+  return step;
+}
+
+std::string at_soil(const std::string& name, const std::string& rest) {
+  return "/materials/soils/" + escaped(name) + rest;
+}
+
+std::string text(double value) {
+  char buffer[32];
+  const auto end = std::to_chars(buffer, buffer + sizeof buffer, value == 0 ? 0.0 : value, std::chars_format::general, 9);
+  return std::string(buffer, end.ptr);
+}
+
+std::string text(const Vec3& point) { return std::string("(") + text(point[0]) + ", " + text(point[1]) + ")"; }
+
+std::string cell_words(const Scene& scene) {
+  const double factor = scene.numerics.cell_size_factor;
+  std::string words = "cells of " + text(scene.cell_size()) + " m";
+  if (factor != 1) words += " (cell_size " + text(scene.domain.cell_size) + " × cell_size_factor " + text(factor) + ")";
+  return words;
+}
+
+void check_supported(const Scene& scene, Faults& faults) {
+  const auto refuse = [&](bool used, const std::string& pointer, const std::string& what) {
+    if (used) faults.push_back({pointer, what + " is not supported yet"});
+  };
+  const Domain& domain = scene.domain;
+  refuse(domain.dimension == Dimension::axisymmetric, "/domain/dimension", "dimension axisymmetric");
+  refuse(domain.dimension == Dimension::space, "/domain/dimension", "dimension space");
+  constexpr const char* sides[] = {"left", "right", "bottom", "top", "front", "back"};
+  for (std::size_t k = 0; k < domain.sides.size(); ++k) {
+    const std::string pointer = std::string("/domain/sides/") + sides[k] + "/kind";
+    refuse(domain.sides[k].kind == SideKind::open, pointer, "an open side");
+    refuse(domain.sides[k].kind == SideKind::reservoir, pointer, "a reservoir side");
+  }
+  for (const auto& [name, soil] : scene.soils) {
+    refuse(soil.permeability.law == PermeabilityLaw::ergun, at_soil(name, "/permeability/law"), "permeability law ergun");
+    refuse(soil.model.law == SoilLaw::modified_cam_clay, at_soil(name, "/model/law"), "modified_cam_clay");
+    refuse(soil.model.tension_cutoff.has_value(), at_soil(name, "/model/tension_cutoff"), "tension_cutoff");
+  }
+  refuse(!scene.reservoirs.empty(), "/reservoirs", "a reservoir");
+  for (std::size_t k = 0; k < scene.loads.size(); ++k)
+    refuse(scene.loads[k].kind == Load::Kind::plate, at_index("loads", k, "/kind"), "a plate load");
+  for (std::size_t k = 0; k < scene.stages.size(); ++k) {
+    const Stage& stage = scene.stages[k];
+    refuse(!stage.heads.empty(), at_index("stages", k, "/heads"), "a change of heads");
+    refuse(!stage.remove_bodies.empty(), at_index("stages", k, "/remove_bodies"), "removing bodies");
+    refuse(stage.quasi_static, at_index("stages", k, "/quasi_static"), "quasi_static");
+  }
+  refuse(!scene.output.sections.empty(), "/output/sections", "a section");
+  refuse(scene.numerics.kernel == Kernel::linear, "/numerics/kernel", "kernel linear");
+  refuse(scene.numerics.transfer == Transfer::apic, "/numerics/transfer", "transfer apic");
+  refuse(scene.numerics.pressure == PressureScheme::explicit_scheme, "/numerics/pressure", "pressure explicit");
+}
+
+std::vector<Fault> check(const Scene& scene) {
+  Faults faults;
+  check_supported(scene, faults);
+  check_names(scene, faults);
+  check_materials(scene, faults);
+  check_stages(scene, faults);
+  check_output(scene, faults);
+  if (check_grid(scene, faults) && scene.domain.dimension != Dimension::space) {
+    check_lines(scene, faults);
+    check_bodies(scene, faults);
+  }
+  return faults;
+}
+
+}  // namespace quicksand

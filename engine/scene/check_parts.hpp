@@ -1,0 +1,43 @@
+#pragma once
+// The parts of `check`, each about one thing. Every part adds faults and assumes nothing about the others.
+
+#include <string>
+#include <vector>
+
+#include "engine/scene/scene.hpp"
+
+namespace quicksand {
+
+using Faults = std::vector<Fault>;
+
+/// What the vocabulary holds but the engine does not compute yet.
+void check_supported(const Scene& scene, Faults& faults);
+/// Names given twice.
+void check_names(const Scene& scene, Faults& faults);
+/// Soils, gravity and initial state: values that contradict each other, or that nothing uses.
+void check_materials(const Scene& scene, Faults& faults);
+/// Loads and stages: times, names they refer to, gates and loads without effect.
+void check_stages(const Scene& scene, Faults& faults);
+/// Probes, intervals, fields and watches.
+void check_output(const Scene& scene, Faults& faults);
+/// The grid. False: it cannot be laid out, and nothing can be compared with it.
+bool check_grid(const Scene& scene, Faults& faults);
+/// Walls, gates, reservoirs and sections against the grid and each other. Plane scenes with a sound grid.
+void check_lines(const Scene& scene, Faults& faults);
+/// Regions of bodies against the domain, the blocks and each other. Plane scenes with a sound grid.
+void check_bodies(const Scene& scene, Faults& faults);
+
+/// Number of cells along an axis of a sound grid.
+long cells_along(const Scene& scene, std::size_t axis);
+
+// Words of faults.
+inline std::string at_index(const char* list, std::size_t index, const std::string& rest = {}) {
+  return std::string("/") + list + "/" + std::to_string(index) + rest;
+}
+std::string escaped(const std::string& name);  ///< a name as one step of a JSON pointer
+std::string at_soil(const std::string& name, const std::string& rest = {});
+std::string text(double value);         ///< shortest text that reads back as the value to 9 digits
+std::string text(const Vec3& point);    ///< "(x, y)"
+std::string cell_words(const Scene& scene);  ///< "cells of 0.04 m (cell_size 0.02 × factor 2)"
+
+}  // namespace quicksand

@@ -1,0 +1,221 @@
+// Malformed and impossible cases: a sound case, changed by a JSON patch, must give exactly these pointers.
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/api/heave_case.hpp"
+
+namespace quicksand {
+namespace {
+
+using nlohmann::json;
+
+struct Mutation {
+  const char* name;
+  const char* patch;  ///< RFC 6902
+  std::vector<std::string> expected;
+};
+
+std::string patched(const char* patch) { return json::parse(test::heave_case()).patch(json::parse(patch)).dump(); }
+
+class CaseFaults : public testing::TestWithParam<Mutation> {};
+
+TEST_P(CaseFaults, GiveTheirPointers) {
+  const ParsedCase parsed = parse_case(patched(GetParam().patch));
+  EXPECT_FALSE(parsed.scene.has_value());
+  auto expected = GetParam().expected;
+  std::sort(expected.begin(), expected.end());
+  EXPECT_EQ(test::pointers(parsed.faults), expected) << test::said(parsed.faults);
+  for (const Fault& fault : parsed.faults) EXPECT_GE(fault.detail.size(), 10u) << fault.pointer;
+}
+
+#define ADD(path, value) R"([{"op":"add","path":")" path R"(","value":)" value "}]"
+#define REMOVE(path) R"([{"op":"remove","path":")" path R"("}])"
+
+const Mutation of_the_format[] = {
+    {"WrongVersion", ADD("/schema", R"("quicksand.case/2")"), {"/schema"}},
+    {"NoVersion", REMOVE("/schema"), {"/schema"}},
+    {"NoName", REMOVE("/name"), {"/name"}},
+    {"UnknownTopKey", ADD("/walls_", "[]"), {"/walls_"}},
+    {"UnknownNestedKey", ADD("/materials/soils/sand/permeability/valeu", "1"), {"/materials/soils/sand/permeability/valeu"}},
+    {"MisspeltNeededKey", R"([{"op":"move","from":"/gates","path":"/gate"}])", {"/gate"}},
+    {"WrongType", ADD("/domain/cell_size", R"("small")"), {"/domain/cell_size"}},
+    {"NullWhereNumber", ADD("/domain/cell_size", "null"), {"/domain/cell_size"}},
+    {"ListWhereObject", ADD("/domain", "[]"), {"/domain"}},
+    {"NegativeCell", ADD("/domain/cell_size", "-0.01"), {"/domain/cell_size"}},
+    {"PorosityAboveOne", ADD("/materials/soils/sand/porosity", "1.4"), {"/materials/soils/sand/porosity"}},
+    {"PorosityOfOne", ADD("/materials/soils/sand/porosity", "1"), {"/materials/soils/sand/porosity"}},
+    {"PoissonOfHalf", ADD("/materials/soils/sand/model/poisson_ratio", "0.5"), {"/materials/soils/sand/model/poisson_ratio"}},
+    {"FractionOfPoint", ADD("/numerics/points_per_cell", "2.5"), {"/numerics/points_per_cell"}},
+    {"UnknownChoice", ADD("/numerics/preset", R"("coarse")"), {"/numerics/preset"}},
+    {"UnknownLaw", ADD("/materials/soils/sand/model/law", R"("mohr")"), {"/materials/soils/sand/model/law"}},
+    {"WaterStiffnessAsWord", ADD("/materials/water/bulk_modulus", R"("stiff")"), {"/materials/water/bulk_modulus"}},
+    {"WaterStiffnessZero", ADD("/materials/water/bulk_modulus", "0"), {"/materials/water/bulk_modulus"}},
+    {"NoStage", ADD("/stages", "[]"), {"/stages"}},
+    {"ZeroDuration", ADD("/stages/1/duration", "0"), {"/stages/1/duration"}},
+    {"NoBodies", REMOVE("/bodies"), {"/bodies"}},
+    {"EmptyRegion", ADD("/bodies/4/region", "{}"), {"/bodies/4/region"}},
+    {"TwoRegions", ADD("/bodies/4/region/polygon", "[[0,0],[1,0],[0,1]]"), {"/bodies/4/region"}},
+    {"TwoCorners", ADD("/bodies/3/region/polygon", "[[0,0],[1,0]]"), {"/bodies/3/region/polygon"}},
+    {"BadCorner", ADD("/bodies/3/region/polygon/1/0", R"("x")"), {"/bodies/3/region/polygon/1/0"}},
+    {"DifferenceOfOne", REMOVE("/bodies/1/region/difference/1"), {"/bodies/1/region/difference"}},
+    {"RadiusMissing", ADD("/bodies/4/region", R"({"disc":{"center":[0.4,0.3]}})"), {"/bodies/4/region/disc/radius"}},
+    {"SlashInName", ADD("/gates/0/name", R"("a/b")"), {"/gates/0/name"}},
+    {"SlashInSoilName", ADD("/materials/soils/a~1b", R"({"permeability":{"value":1e-4},"model":{"law":"linear_elastic","young_modulus":1e6,"poisson_ratio":0.3}})"),
+     {"/materials/soils/a~1b"}},
+    {"ThreeNumbersInThePlane", ADD("/gravity", "[0,-9.81,0]"), {"/gravity"}},
+    {"OneNumber", ADD("/domain/max", "[0.6]"), {"/domain/max"}},
+    {"UnknownField", ADD("/output/fields/0", R"("presure")"), {"/output/fields/0"}},
+    {"NoSuchQuantity", ADD("/output/probes/0/quantity", R"("colour")"), {"/output/probes/0/quantity"}},
+};
+
+const Mutation of_keys_without_effect[] = {
+    {"HeadOfClosedSide", ADD("/domain/sides/bottom/head", "1"), {"/domain/sides/bottom/head"}},
+    {"FrontInThePlane", ADD("/domain/sides/front", R"({"kind":"slip"})"), {"/domain/sides/front"}},
+    {"GrainSizeWithoutErgun", ADD("/materials/soils/sand/permeability/grain_size", "1e-3"), {"/materials/soils/sand/permeability/grain_size"}},
+    {"FrictionOfElasticSoil", ADD("/materials/soils/plate/model/friction_angle", "0"), {"/materials/soils/plate/model/friction_angle"}},
+    {"FrictionMissing", REMOVE("/materials/soils/sand/model/friction_angle"), {"/materials/soils/sand/model/friction_angle"}},
+    {"PermeabilityMissing", REMOVE("/materials/soils/sand/permeability"), {"/materials/soils/sand/permeability"}},
+    {"SoilOfWater", ADD("/bodies/0/soil", R"("sand")"), {"/bodies/0/soil"}},
+    {"SoilMissing", REMOVE("/bodies/3/soil"), {"/bodies/3/soil"}},
+    {"VelocityOfFixed", ADD("/bodies/2/velocity", "[0,1]"), {"/bodies/2/velocity"}},
+    {"K0WithoutK0", ADD("/initial/stress", R"("zero")"), {"/initial/k0"}},
+    {"UniformPressureMissing", ADD("/initial/pressure", R"("uniform")"), {"/initial/uniform_pressure"}},
+    {"PlateKeysOfTraction", ADD("/loads/0/rough", "true"), {"/loads/0/rough"}},
+    {"FactorOfFixedStep", R"([{"op":"add","path":"/numerics/time_step","value":1e-4},{"op":"add","path":"/numerics/time_step_factor","value":0.5}])",
+     {"/numerics/time_step_factor"}},
+    {"UnusedSoil", ADD("/materials/soils/clay", R"({"permeability":{"value":1e-9},"model":{"law":"linear_elastic","young_modulus":1e6,"poisson_ratio":0.3}})"),
+     {"/materials/soils/clay"}},
+    {"UnusedGate", ADD("/stages/1/open_gates", "[]"), {"/gates/0"}},
+    {"GateAlwaysOpen", ADD("/stages/0/open_gates", R"(["valve"])"), {"/gates/0"}},
+    {"UnusedLoad", ADD("/stages/1/loads", "[]"), {"/loads/0"}},
+    {"ZeroLoad", ADD("/loads/0/traction", "[0,0]"), {"/loads/0/traction"}},
+};
+
+const Mutation of_names[] = {
+    {"UnknownSoil", ADD("/bodies/3/soil", R"("silt")"), {"/bodies/3/soil", "/materials/soils/sand"}},
+    {"UnknownGate", ADD("/stages/1/open_gates/-", R"("door")"), {"/stages/1/open_gates/1"}},
+    {"GateTwice", ADD("/stages/1/open_gates/-", R"("valve")"), {"/stages/1/open_gates/1"}},
+    {"UnknownLoad", ADD("/stages/0/loads/-", R"("train")"), {"/stages/0/loads/0"}},
+    {"LoadOnWater", ADD("/loads/0/body", R"("pond")"), {"/loads/0/body"}},
+    {"LoadOnNothing", ADD("/loads/0/body", R"("house")"), {"/loads/0/body"}},
+    {"DuplicateBody", ADD("/bodies/4/name", R"("tank")"), {"/bodies/4/name"}},
+    {"DuplicateStage", ADD("/stages/1/name", R"("settle")"), {"/stages/1/name"}},
+    {"HeaveOfWater", ADD("/output/heave/body", R"("pond")"), {"/output/heave/body"}},
+    {"HeaveProbeUnknown", ADD("/output/heave/above", R"("roof")"), {"/output/heave/above"}},
+    {"HeaveProbeOfOtherQuantity", ADD("/output/probes/0/quantity", R"("porosity")"), {"/output/heave/below"}},
+    {"HeaveProbesLevel", ADD("/output/probes/0/at/1", "0.24"), {"/output/heave/below"}},
+};
+
+const Mutation of_geometry[] = {
+    {"DomainTurned", ADD("/domain/min", "[0.7,0]"), {"/domain/max"}},
+    {"DomainNotWholeCells", ADD("/domain/max/0", "0.61"), {"/domain/max"}},
+    {"TooManyCells", ADD("/domain/cell_size", "1e-5"), {"/domain/cell_size"}},
+    {"WallOffFaces", ADD("/walls/1/line/from", "[0.43,0.4]"), {"/walls/1/line", "/walls/1/line/from"}},
+    {"WallOffFacesOfDraft", R"([{"op":"add","path":"/walls/1/line/from/0","value":0.45},{"op":"add","path":"/walls/1/line/to/0","value":0.45}])",
+     {"/walls/1/line/from", "/walls/1/line/to"}},
+    {"WallOutside", ADD("/walls/1/line/to/1", "0.8"), {"/walls/1/line/to"}},
+    {"WallSlanted", ADD("/walls/1/line/to/0", "0.48"), {"/walls/1/line"}},
+    {"WallOfNoLength", ADD("/walls/1/line/to", "[0.44,0.4]"), {"/walls/1/line"}},
+    {"WallOnEdge", ADD("/walls/1/line", R"({"from":[0.6,0.4],"to":[0.6,0.5]})"), {"/walls/1/line"}},
+    {"WallOfNothing", REMOVE("/walls/1/line"), {"/walls/1"}},
+    {"BlockNotBox", ADD("/walls/1", R"({"name":"pile","block":{"disc":{"center":[0.4,0.5],"radius":0.04}}})"), {"/walls/1/block"}},
+    {"BlockOffFaces", ADD("/walls/0/block/box/max/0", "0.295"), {"/walls/0/block/box/max"}},
+    {"GateOnWall", ADD("/walls/-", R"({"name":"plug","line":{"from":[0.24,0.04],"to":[0.24,0.08]}})"), {"/gates/0/line"}},
+    {"GateInBlock", ADD("/gates/0/line", R"({"from":[0.24,0.2],"to":[0.24,0.3]})"), {"/gates/0/line"}},
+    {"BodyOutside", ADD("/bodies/4/region/box/max/0", "0.7"), {"/bodies/4/region"}},
+    {"BodyTurned", ADD("/bodies/4/region/box/max/1", "0.2"), {"/bodies/4/region/box"}},
+    {"BodyTooThin", ADD("/bodies/4/region/box", R"({"min":[0.4,0.4],"max":[0.5,0.404]})"), {"/bodies/4/region"}},
+    {"BodiesOverlap", ADD("/bodies/4/region/box/min/1", "0.23"), {"/bodies/4/region"}},
+    {"BodyInBlock", ADD("/bodies/4/region/box", R"({"min":[0.22,0.4],"max":[0.28,0.5]})"), {"/bodies/4/region"}},
+    {"BodyIntoBlock", ADD("/bodies/4/region/box/min/0", "0.28"), {"/bodies/4/region"}},
+    {"PolygonCrossed", ADD("/bodies/3/region/polygon", "[[0.3,0.12],[0.6,0.24],[0.6,0.12],[0.3,0.24]]"), {"/bodies/3/region/polygon"}},
+    {"FixedBodyOffFaces", ADD("/bodies/2/region/box/max/1", "0.115"), {"/bodies/2/region"}},
+    {"ProbeOutside", ADD("/output/probes/0/at", "[0.45,-0.1]"), {"/output/probes/0/at"}},
+};
+
+const Mutation of_sense[] = {
+    {"DilationAboveFriction", ADD("/materials/soils/sand/model/dilation_angle", "35"), {"/materials/soils/sand/model/dilation_angle"}},
+    {"NoStrength", R"([{"op":"add","path":"/materials/soils/sand/model/friction_angle","value":0},{"op":"add","path":"/materials/soils/sand/model/dilation_angle","value":0}])",
+     {"/materials/soils/sand/model/friction_angle"}},
+    {"MaxPorosityBelowPorosity", ADD("/materials/soils/sand/max_porosity", "0.3"), {"/materials/soils/sand/max_porosity"}},
+    {"RestAfterTheEnd", ADD("/stages/0/until_rest/at_least", "0.5"), {"/stages/0/until_rest/at_least"}},
+    {"TooManyFrames", ADD("/output/frame_interval", "1e-5"), {"/output/frame_interval"}},
+    {"TooManySamples", ADD("/output/series_interval", "1e-7"), {"/output/series_interval"}},
+    {"HeadWithoutGravity", R"([{"op":"add","path":"/gravity","value":[0,0]},{"op":"remove","path":"/output/heave"},{"op":"remove","path":"/initial/k0"}])",
+     {"/output/probes/0/quantity", "/output/probes/1/quantity"}},
+};
+
+const Mutation not_supported_yet[] = {
+    {"Axisymmetric", ADD("/domain/dimension", R"("axisymmetric")"), {"/domain/dimension"}},
+    {"OpenSide", ADD("/domain/sides/top", R"({"kind":"open"})"), {"/domain/sides/top/kind"}},
+    {"ReservoirSide", ADD("/domain/sides/left", R"({"kind":"reservoir","head":0.5})"), {"/domain/sides/left/kind"}},
+    {"Ergun", ADD("/materials/soils/sand/permeability", R"({"law":"ergun","grain_size":5e-4})"), {"/materials/soils/sand/permeability/law"}},
+    {"CamClay", ADD("/materials/soils/plate/model/law", R"("modified_cam_clay")"), {"/materials/soils/plate/model/law"}},
+    {"TensionCutoff", ADD("/materials/soils/sand/model/tension_cutoff", "100"), {"/materials/soils/sand/model/tension_cutoff"}},
+    {"LinearKernel", ADD("/numerics/kernel", R"("linear")"), {"/numerics/kernel"}},
+    {"Apic", ADD("/numerics/transfer", R"("apic")"), {"/numerics/transfer"}},
+    {"QuasiStatic", ADD("/stages/0/quasi_static", "true"), {"/stages/0/quasi_static"}},
+    {"RemoveBodies", ADD("/stages/1/remove_bodies", R"(["pond"])"), {"/stages/1/remove_bodies"}},
+    {"Reservoir", ADD("/reservoirs", R"([{"name":"lake","line":{"from":[0,0],"to":[0,0.2]},"head":0.5}])"), {"/reservoirs"}},
+    {"Section", ADD("/output/sections", R"([{"name":"cut","line":{"from":[0.3,0.12],"to":[0.6,0.12]},"quantity":"flow"}])"), {"/output/sections"}},
+    {"Plate", ADD("/loads/0", R"({"name":"cover","kind":"plate","body":"sand","plate":{"from":[0.3,0.24],"to":[0.6,0.24]},"plate_velocity":[0,-1]})"),
+     {"/loads/0/kind"}},
+};
+
+const auto name_of = [](const auto& info) { return info.param.name; };
+INSTANTIATE_TEST_SUITE_P(Format, CaseFaults, testing::ValuesIn(of_the_format), name_of);
+INSTANTIATE_TEST_SUITE_P(WithoutEffect, CaseFaults, testing::ValuesIn(of_keys_without_effect), name_of);
+INSTANTIATE_TEST_SUITE_P(Names, CaseFaults, testing::ValuesIn(of_names), name_of);
+INSTANTIATE_TEST_SUITE_P(Geometry, CaseFaults, testing::ValuesIn(of_geometry), name_of);
+INSTANTIATE_TEST_SUITE_P(Sense, CaseFaults, testing::ValuesIn(of_sense), name_of);
+INSTANTIATE_TEST_SUITE_P(NotSupportedYet, CaseFaults, testing::ValuesIn(not_supported_yet), name_of);
+
+TEST(CaseFaultsTogether, FaultsOfAllKindsComeInOneAnswer) {
+  std::string text = patched(R"([
+    {"op":"add","path":"/colour","value":"red"},
+    {"op":"add","path":"/materials/soils/sand/porosity","value":1.4},
+    {"op":"add","path":"/domain/sides/bottom/head","value":1},
+    {"op":"add","path":"/stages/1/open_gates/-","value":"door"},
+    {"op":"add","path":"/walls/1/line/to/0","value":0.45},
+    {"op":"add","path":"/bodies/4/region/box/min/1","value":0.23},
+    {"op":"add","path":"/numerics/kernel","value":"linear"}])");
+  text.insert(text.size() - 1, R"(,"name":"again")");  // a duplicate key
+  const ParsedCase parsed = parse_case(text);
+  const std::vector<std::string> expected{"/bodies/4/region", "/colour", "/domain/sides/bottom/head",
+                                          "/materials/soils/sand/porosity", "/name", "/numerics/kernel",
+                                          "/stages/1/open_gates/1", "/walls/1/line", "/walls/1/line/to"};
+  EXPECT_EQ(test::pointers(parsed.faults), expected) << test::said(parsed.faults);
+}
+
+TEST(CaseFaultsTogether, ConsequencesOfABrokenPartStayUnsaid) {
+  // Without the gates nothing can be said about the gates that stages open; the stage's own fault stays.
+  const ParsedCase parsed = parse_case(patched(R"([
+    {"op":"add","path":"/gates","value":{}}, {"op":"add","path":"/stages/0/until_rest/at_least","value":9}])"));
+  EXPECT_EQ(test::pointers(parsed.faults), (std::vector<std::string>{"/gates", "/stages/0/until_rest/at_least"}))
+      << test::said(parsed.faults);
+}
+
+TEST(CaseFaultWords, SayValueRangeAndNearestKey) {
+  const auto detail = [](const char* patch) { return parse_case(patched(patch)).faults.at(0).detail; };
+  const std::string range = detail(ADD("/materials/soils/sand/porosity", "1.4"));
+  EXPECT_NE(range.find("1.4 is not allowed: give a number above 0 and below 1"), std::string::npos) << range;
+  const std::string unknown = detail(ADD("/materials/soils/sand/porositi", "0.4"));
+  EXPECT_NE(unknown.find("did you mean \"porosity\"?"), std::string::npos) << unknown;
+  const std::string corner = detail(ADD("/walls/1/line/to", "[0.44,0.513]"));
+  EXPECT_NE(corner.find("cells of 0.02 m (cell_size 0.01 × cell_size_factor 2): the nearest is (0.44, 0.52)"), std::string::npos) << corner;
+  const std::string later = detail(ADD("/numerics/kernel", R"("linear")"));
+  EXPECT_NE(later.find("is not supported yet"), std::string::npos) << later;
+}
+
+TEST(CaseFaultWords, ManyFaultsAreCutShort) {
+  json document = json::parse(test::heave_case());
+  for (int k = 0; k < 5000; ++k) document["key" + std::to_string(k)] = k;
+  const ParsedCase parsed = parse_case(document.dump());
+  ASSERT_EQ(parsed.faults.size(), 1001u);
+  EXPECT_NE(parsed.faults.back().detail.find("4000 more"), std::string::npos) << parsed.faults.back().detail;
+}
+
+}  // namespace
+}  // namespace quicksand

@@ -1,0 +1,157 @@
+// The schema as a document: draft-07 in structure, and every key described with unit and range.
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "api/case_json.hpp"
+#include "api/openapi.hpp"
+#include "api/words.hpp"
+
+namespace quicksand {
+namespace {
+
+using nlohmann::json;
+
+const json& schema() {
+  static const json text = json::parse(case_schema());
+  return text;
+}
+
+const json& resolved(const json& node) {
+  return node.contains("$ref") ? schema().at(json::json_pointer(node["$ref"].get<std::string>().substr(1))) : node;
+}
+
+/// Calls f(node, where) for every schema node of the document.
+void walk(const json& node, const std::string& where, const std::function<void(const json&, const std::string&)>& f) {
+  if (!node.is_object()) return;  // additionalProperties: false
+  f(node, where);
+  for (const char* key : {"properties", "definitions"})
+    if (node.contains(key))
+      for (const auto& item : node[key].items()) walk(item.value(), where + "/" + key + "/" + item.key(), f);
+  for (const char* key : {"items", "additionalProperties", "propertyNames"})
+    if (node.contains(key)) walk(node[key], where + "/" + key, f);
+  if (node.contains("anyOf"))
+    for (const json& option : node["anyOf"]) walk(option, where + "/anyOf", f);
+}
+
+bool number_like(const json& node) {
+  if (!node.contains("type")) return false;
+  const json types = node["type"].is_array() ? node["type"] : json::array({node["type"]});
+  return std::any_of(types.begin(), types.end(), [](const json& t) { return t == "number" || t == "integer"; });
+}
+
+TEST(Schema, IsDraft07InStructure) {
+  EXPECT_EQ(schema()["$schema"], "http://json-schema.org/draft-07/schema#");
+  const std::set<std::string> texts{"$schema", "$ref", "title", "description", "pattern", "x-unit"};
+  const std::set<std::string> numbers{"minimum", "maximum", "exclusiveMinimum", "exclusiveMaximum"};
+  const std::set<std::string> counts{"minLength", "maxLength", "minItems", "maxItems", "minProperties", "maxProperties"};
+  const std::set<std::string> types{"null", "boolean", "object", "array", "number", "string", "integer"};
+  walk(schema(), "", [&](const json& node, const std::string& where) {
+    for (const auto& item : node.items()) {
+      const std::string& key = item.key();
+      const json& value = item.value();
+      const std::string place = where + "/" + key;
+      if (texts.contains(key)) EXPECT_TRUE(value.is_string()) << place;
+      else if (numbers.contains(key)) EXPECT_TRUE(value.is_number()) << place;
+      else if (counts.contains(key)) EXPECT_TRUE(value.is_number_unsigned()) << place;
+      else if (key == "properties" || key == "definitions") EXPECT_TRUE(value.is_object()) << place;
+      else if (key == "items" || key == "propertyNames") EXPECT_TRUE(value.is_object()) << place;
+      else if (key == "additionalProperties") EXPECT_TRUE(value.is_object() || value.is_boolean()) << place;
+      else if (key == "required") EXPECT_EQ(std::set<json>(value.begin(), value.end()).size(), value.size()) << place;
+      else if (key == "enum" || key == "anyOf") EXPECT_TRUE(value.is_array() && !value.empty()) << place;
+      else if (key == "type")
+        for (const json& type : value.is_array() ? value : json::array({value})) EXPECT_TRUE(types.contains(type.get<std::string>())) << place;
+      else EXPECT_TRUE(key == "const" || key == "default") << place << " is no keyword in use here";
+    }
+    if (node.contains("$ref")) EXPECT_NO_THROW(resolved(node)) << where;
+    if (node.contains("required"))
+      for (const json& key : node["required"]) EXPECT_TRUE(node["properties"].contains(key.get<std::string>())) << where << key;
+  });
+}
+
+TEST(Schema, DescribesEveryKeyWithUnitAndRange) {
+  std::size_t keys = 0;
+  walk(schema(), "", [&](const json& node, const std::string& where) {
+    if (!node.contains("properties")) return;
+    EXPECT_EQ(node["additionalProperties"], false) << where;
+    for (const auto& item : node["properties"].items()) {
+      const json& key = item.value();
+      const std::string place = where + "/" + item.key();
+      ++keys;
+      EXPECT_GE(key.value("description", "").size(), 8u) << place;
+      const json& meant = resolved(key);
+      const bool vector = meant.contains("items") && number_like(resolved(meant["items"]));
+      if (number_like(meant) || vector) EXPECT_TRUE(key.contains("x-unit")) << place;
+    }
+  });
+  EXPECT_GT(keys, 120u);
+  walk(schema(), "", [](const json& node, const std::string& where) {
+    if (number_like(node)) {
+      EXPECT_TRUE(node.contains("minimum") || node.contains("exclusiveMinimum")) << where;
+      EXPECT_TRUE(node.contains("maximum") || node.contains("exclusiveMaximum")) << where;
+    }
+    if (node.value("type", json()) == "array") EXPECT_TRUE(node.contains("maxItems")) << where;
+    if (node.value("type", json()) == "string") EXPECT_TRUE(node.contains("maxLength") || node.contains("pattern")) << where;
+  });
+}
+
+TEST(Schema, DefaultsAreAllowedValuesAndThoseOfTheScene) {
+  const json& d = schema()["definitions"];
+  const auto default_of = [&](const char* object, const char* key) { return d[object]["properties"][key]["default"]; };
+  EXPECT_EQ(default_of("soil", "grain_density"), Soil{}.grain_density);
+  EXPECT_EQ(default_of("soil", "porosity"), Soil{}.porosity);
+  EXPECT_EQ(default_of("permeability", "law"), word_of(Permeability{}.law));
+  EXPECT_EQ(default_of("water", "density"), Water{}.density);
+  EXPECT_EQ(default_of("water", "bulk_modulus"), *Water{}.bulk_modulus);
+  EXPECT_EQ(default_of("water", "viscosity"), Water{}.viscosity);
+  EXPECT_EQ(default_of("initial", "pressure"), word_of(Initial{}.pressure));
+  EXPECT_EQ(default_of("initial", "stress"), word_of(Initial{}.stress));
+  EXPECT_EQ(default_of("output", "frame_interval"), Output{}.frame_interval);
+  EXPECT_EQ(default_of("output", "series_interval"), Output{}.series_interval);
+  EXPECT_EQ(default_of("heave_watch", "threshold"), HeaveWatch{}.threshold);
+  EXPECT_EQ(default_of("numerics", "preset"), word_of(Numerics{}.preset));
+  EXPECT_EQ(default_of("numerics", "points_per_cell"), Numerics{}.points_per_cell);
+  EXPECT_EQ(default_of("numerics", "pic_rate"), Numerics{}.pic_rate);
+  EXPECT_EQ(default_of("numerics", "time_step_factor"), Numerics{}.time_step_factor);
+  EXPECT_EQ(default_of("numerics", "drift_time"), Numerics{}.drift_time);
+  EXPECT_EQ(default_of("numerics", "max_steps"), Numerics{}.max_steps);
+}
+
+template <typename Choice>
+void expect_words(const json& node) {
+  json words = json::array();
+  for (const auto& [value, word] : words_of(Choice{})) words.push_back(word);
+  EXPECT_EQ(node["enum"], words);
+}
+
+TEST(Schema, OffersTheWordsThatAreRead) {
+  const json& d = schema()["definitions"];
+  expect_words<Dimension>(schema()["properties"]["domain"]["properties"]["dimension"]);
+  expect_words<SideKind>(d["side"]["properties"]["kind"]);
+  expect_words<PermeabilityLaw>(d["permeability"]["properties"]["law"]);
+  expect_words<SoilLaw>(d["soil_model"]["properties"]["law"]);
+  expect_words<BodyKind>(d["body"]["properties"]["kind"]);
+  expect_words<InitialPressure>(d["initial"]["properties"]["pressure"]);
+  expect_words<InitialStress>(d["initial"]["properties"]["stress"]);
+  expect_words<Load::Kind>(d["load"]["properties"]["kind"]);
+  expect_words<Preset>(d["numerics"]["properties"]["preset"]);
+  expect_words<Kernel>(d["numerics"]["properties"]["kernel"]);
+  expect_words<Transfer>(d["numerics"]["properties"]["transfer"]);
+  expect_words<PressureScheme>(d["numerics"]["properties"]["pressure"]);
+}
+
+TEST(OpenApi, IsCompiledInWhole) {
+  const std::string& text = openapi_document();
+  EXPECT_EQ(text.rfind("openapi: 3.1", 0), 0u);
+  for (const char* path : {"/v1/runs:", "/v1/validate:", "/v1/runs/{id}:", "/v1/runs/{id}/case:", "/v1/runs/{id}/results:",
+                           "/v1/runs/{id}/results/{file}:", "/v1/runs/{id}/cancel:", "/v1/cases:", "/v1/schemas/case:",
+                           "/v1/openapi.yaml:", "/v1/service-info:", "/healthz:", "/readyz:"})
+    EXPECT_NE(text.find(std::string("\n  ") + path + "\n"), std::string::npos) << path;
+  EXPECT_EQ(text.back(), '\n');
+}
+
+}  // namespace
+}  // namespace quicksand

@@ -1,0 +1,176 @@
+#include "engine/scene/check.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <functional>
+
+namespace quicksand {
+namespace {
+
+Region box(double x0, double y0, double x1, double y1) {
+  Region r;
+  r.min = {x0, y0, 0}, r.max = {x1, y1, 0};
+  return r;
+}
+
+/// A basin 1 m × 1 m on cells of 0.1 m: sand below, water above.
+Scene basin() {
+  Scene s;
+  s.domain.cell_size = 0.1;
+  Soil sand;
+  sand.permeability.value = 1e-4;
+  sand.model = {SoilLaw::mohr_coulomb, 1e7, 0.3, 30, 5, 0, {}};
+  s.soils["sand"] = sand;
+  s.bodies = {{"sand", BodyKind::saturated_soil, "sand", box(0, 0, 1, 0.3), false, {}},
+              {"water", BodyKind::water, "", box(0, 0.3, 1, 0.6), false, {}}};
+  s.stages = {{}};
+  s.stages[0].name = "rest";
+  s.stages[0].duration = 1;
+  return s;
+}
+
+std::vector<std::string> faults_of(const Scene& scene) {
+  std::vector<std::string> pointers;
+  for (const Fault& fault : check(scene)) pointers.push_back(fault.pointer);
+  std::sort(pointers.begin(), pointers.end());
+  return pointers;
+}
+
+using Pointers = std::vector<std::string>;
+
+Pointers after(const std::function<void(Scene&)>& change) {
+  Scene scene = basin();
+  change(scene);
+  return faults_of(scene);
+}
+
+TEST(Check, ASoundSceneHasNoFault) { EXPECT_EQ(faults_of(basin()), Pointers{}); }
+
+TEST(Check, ScalesDoNotMatter) {
+  for (const double scale : {1e-6, 1e-3, 1e3}) {
+    Scene s = basin();
+    s.domain.cell_size *= scale;
+    for (Vec3* v : {&s.domain.max, &s.bodies[0].region.max, &s.bodies[1].region.min, &s.bodies[1].region.max})
+      for (double& x : *v) x *= scale;
+    EXPECT_EQ(faults_of(s), Pointers{}) << scale;
+  }
+}
+
+TEST(Check, OriginsThatAreNotRoundDoNotMatter) {
+  Scene s = basin();
+  const Vec3 shift{-123.456789, 0.1234567, 0};
+  for (Vec3* v : {&s.domain.min, &s.domain.max, &s.bodies[0].region.min, &s.bodies[0].region.max, &s.bodies[1].region.min,
+                  &s.bodies[1].region.max})
+    for (std::size_t k = 0; k < 3; ++k) (*v)[k] += shift[k];
+  s.bodies[0].fixed = true;
+  EXPECT_EQ(faults_of(s), Pointers{});
+}
+
+TEST(Check, EmptyAndOversizedGrids) {
+  EXPECT_EQ(after([](Scene& s) { s.domain.cell_size = 0; }), Pointers{"/domain/cell_size"});
+  EXPECT_EQ(after([](Scene& s) { s.domain.max[0] = 0; }), Pointers{"/domain/max"});
+  EXPECT_EQ(after([](Scene& s) { s.domain.max[1] = 1.05; }), Pointers{"/domain/max"});
+  EXPECT_EQ(after([](Scene& s) { s.domain.cell_size = 1e-4; }), Pointers{"/domain/cell_size"});
+}
+
+TEST(Check, PresetsDecideWhichFacesThereAre) {
+  const auto with_factor = [](double factor) {
+    return after([factor](Scene& s) {
+      s.numerics.cell_size_factor = factor;
+      s.walls.resize(1);
+      s.walls[0].line = Segment{{0.7, 0.5, 0}, {0.7, 1, 0}};
+    });
+  };
+  EXPECT_EQ(with_factor(1), Pointers{});
+  EXPECT_EQ(with_factor(0.5), Pointers{});
+  EXPECT_EQ(with_factor(2), (Pointers{"/walls/0/line/from", "/walls/0/line/to"}));  // 0.5 and 0.7 lie within cells
+}
+
+TEST(Check, OverlapsAreFoundPointByPoint) {
+  // Points lie at 0.025, 0.075, …: an overlap that no point sees is none.
+  EXPECT_EQ(after([](Scene& s) { s.bodies[1].region.min[1] = 0.28; }), Pointers{});
+  EXPECT_EQ(after([](Scene& s) { s.bodies[1].region.min[1] = 0.27; }), Pointers{"/bodies/1/region"});
+  const auto faults = [] {
+    Scene s = basin();
+    s.bodies[1].region.min[1] = 0.27;
+    return check(s);
+  }();
+  ASSERT_EQ(faults.size(), 1u);
+  EXPECT_NE(faults[0].detail.find("(20 points)"), std::string::npos) << faults[0].detail;
+  EXPECT_NE(faults[0].detail.find("near (0.025, 0.275)"), std::string::npos) << faults[0].detail;
+}
+
+TEST(Check, ThreeBodiesInOnePlaceAreAllNamed) {
+  EXPECT_EQ(after([](Scene& s) {
+              for (const char* name : {"a", "b"}) s.bodies.push_back({name, BodyKind::water, "", box(0.2, 0.4, 0.4, 0.5), false, {}});
+            }),
+            (Pointers{"/bodies/2/region", "/bodies/3/region"}));
+}
+
+TEST(Check, BodiesKeepOutOfBlocks) {
+  const auto with_block = [](const Region& block) {
+    return after([&](Scene& s) {
+      s.walls.resize(1);
+      s.walls[0].block = block;
+    });
+  };
+  EXPECT_EQ(with_block(box(0.4, 0.6, 0.6, 1)), Pointers{});
+  EXPECT_EQ(with_block(box(0.4, 0.2, 0.6, 0.5)), (Pointers{"/bodies/0/region", "/bodies/1/region"}));
+}
+
+TEST(Check, FixedBodiesFillWholeCells) {
+  const auto fixed = [](const Region& region) {
+    return after([&](Scene& s) {
+      s.bodies[0].fixed = true;
+      s.bodies[0].region = region;
+      s.bodies.pop_back();
+    });
+  };
+  Region steps = box(0, 0, 1, 0.3);
+  EXPECT_EQ(fixed(steps), Pointers{});
+  Region corner;
+  corner.kind = Region::Kind::difference;
+  corner.parts = {box(0, 0, 1, 0.3), box(0.5, 0.2, 1, 0.3)};
+  EXPECT_EQ(fixed(corner), Pointers{});
+  corner.parts[1] = box(0.55, 0.2, 1, 0.3);  // half a cell
+  EXPECT_EQ(fixed(corner), Pointers{"/bodies/0/region"});
+  EXPECT_EQ(fixed(box(0, 0, 1, 0.29)), Pointers{"/bodies/0/region"});
+}
+
+TEST(Check, ReservoirsAndSectionsLieOnTheirLines) {
+  const auto pointers = after([](Scene& s) {
+    s.reservoirs = {{"lake", {{0.5, 0, 0}, {0.5, 0.4, 0}}, 1}};
+    s.output.sections = {{"cut", {{0.5, 0, 0}, {0.5, 0.43, 0}}, "flow"}};
+    s.stages[0].heads = {{"sea", 1}};
+  });
+  EXPECT_EQ(pointers, (Pointers{"/output/sections", "/output/sections/0/line/to", "/reservoirs", "/reservoirs/0/line",
+                                "/stages/0/heads", "/stages/0/heads/sea"}));
+}
+
+TEST(Check, SpaceIsRefusedOnce) {
+  EXPECT_EQ(after([](Scene& s) { s.domain.dimension = Dimension::space; }), Pointers{"/domain/dimension"});
+}
+
+TEST(Check, TooManyEdgesAreRefusedRatherThanSlow) {
+  EXPECT_EQ(after([](Scene& s) {
+              Region many;
+              many.kind = Region::Kind::union_of;
+              many.parts.assign(6000, box(0, 0.3, 1, 0.6));
+              s.bodies[1].region = many;
+            }),
+            Pointers{"/bodies"});
+}
+
+TEST(Check, HoldsForAnyGravity) {
+  EXPECT_EQ(after([](Scene& s) { s.gravity = {1, -9.7, 0}; }), Pointers{});
+  EXPECT_EQ(after([](Scene& s) {
+              s.gravity = {0, 0, 0};
+              s.initial.water_table = 0.6;
+              s.initial.k0 = 0.5;
+            }),
+            (Pointers{"/initial/k0", "/initial/water_table"}));
+}
+
+}  // namespace
+}  // namespace quicksand
