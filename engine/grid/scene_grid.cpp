@@ -1,0 +1,127 @@
+#include "engine/grid/scene_grid.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/scene/region.hpp"
+
+namespace quicksand {
+namespace {
+
+template <int D>
+Vec3 to_vec3(const Vec<D>& x) {
+  Vec3 v{};
+  for (int d = 0; d < D; ++d) v[d] = x[d];
+  return v;
+}
+
+/// Closes every face between cells marked inside and cells marked outside.
+template <int D>
+void close_outline(const Grid<D>& grid, const std::vector<char>& inside, Walls<D>& walls, bool no_slip) {
+  for_each_cell(grid, [&](int i, const Cell<D>&) {
+    for (int d = 0; d < D; ++d)
+      for (int side : {0, 1}) {
+        const int other = i + (2 * side - 1) * grid.stride[d];
+        if (inside[i] && !inside[other]) walls.close(d, i + side * grid.stride[d], no_slip);
+      }
+  });
+}
+
+template <int D>
+std::vector<char> cells_in(const Grid<D>& grid, const Region& region) {
+  std::vector<char> inside(grid.count(), 0);
+  for_each_cell(grid, [&](int i, const Cell<D>& c) { inside[i] = contains(region, to_vec3<D>(grid.center(c)), D); });
+  return inside;
+}
+
+template <int D>
+void close_domain(const Scene& scene, const Grid<D>& grid, Walls<D>& walls) {
+  for_each_cell(grid, [&](int i, const Cell<D>& c) {
+    for (int d = 0; d < D; ++d) {
+      if (c[d] == 0) walls.close(d, i, scene.domain.sides[2 * d].kind == SideKind::no_slip);
+      if (c[d] == grid.cells[d] - 1)
+        walls.close(d, i + grid.stride[d], scene.domain.sides[2 * d + 1].kind == SideKind::no_slip);
+    }
+  });
+}
+
+}  // namespace
+
+template <int D>
+Grid<D> make_grid(const Scene& scene) {
+  const double h = scene.cell_size();
+  Vec<D> low;
+  Cell<D> count;
+  for (int d = 0; d < D; ++d) {
+    low[d] = scene.domain.min[d];
+    count[d] = static_cast<int>(std::lround((scene.domain.max[d] - scene.domain.min[d]) / h));
+  }
+  return Grid<D>(low, count, h);
+}
+
+template <int D>
+std::vector<std::pair<int, int>> faces_on(const Grid<D>& grid, const Segment& line) {
+  std::array<int, D> low, high;
+  int normal = -1;
+  for (int d = 0; d < D; ++d) {
+    const double a = std::min(line.from[d], line.to[d]), b = std::max(line.from[d], line.to[d]);
+    low[d] = static_cast<int>(std::lround((a - grid.origin[d]) * grid.inverse_h));
+    high[d] = static_cast<int>(std::lround((b - grid.origin[d]) * grid.inverse_h));
+    if (low[d] == high[d]) normal = d;
+  }
+  std::vector<std::pair<int, int>> faces;
+  if (normal < 0) return faces;
+  high[normal] = low[normal] + 1;
+  for (int d = 0; d < D; ++d) {
+    low[d] = std::max(low[d], 0);
+    high[d] = std::min(high[d], grid.cells[d] + (d == normal));
+    if (low[d] >= high[d]) return faces;
+  }
+  Cell<D> c = low;
+  while (true) {
+    faces.emplace_back(normal, grid.index(c));
+    int d = 0;
+    for (; d < D && ++c[d] == high[d]; ++d) c[d] = low[d];
+    if (d == D) return faces;
+  }
+}
+
+template <int D>
+SceneWalls<D> make_walls(const Scene& scene, const Grid<D>& grid, const std::vector<std::string>& open_gates) {
+  Walls<D> walls(grid);
+  close_domain(scene, grid, walls);
+  for (const Wall& wall : scene.walls) {
+    if (wall.block) {
+      const auto inside = cells_in(grid, *wall.block);
+      close_outline(grid, inside, walls, wall.no_slip);
+      for (int i = 0; i < grid.count(); ++i)
+        if (inside[i]) walls.block(i);
+    }
+    if (wall.line)
+      for (const auto& [d, face] : faces_on(grid, *wall.line)) walls.close(d, face, wall.no_slip);
+  }
+  for (const Gate& gate : scene.gates) {
+    if (std::find(open_gates.begin(), open_gates.end(), gate.name) != open_gates.end()) continue;
+    for (const auto& [d, face] : faces_on(grid, gate.line)) walls.close(d, face, false);
+  }
+  SceneWalls<D> both{walls, walls};
+  for (const Body& body : scene.bodies) {
+    if (!body.fixed) continue;
+    const auto inside = cells_in(grid, body.region);
+    close_outline(grid, inside, both.soil, false);
+    for (int i = 0; i < grid.count(); ++i)
+      if (inside[i]) both.soil.block(i);
+  }
+  both.water.rebuild(grid);
+  both.soil.rebuild(grid);
+  return both;
+}
+
+template Grid<2> make_grid<2>(const Scene&);
+template Grid<3> make_grid<3>(const Scene&);
+template std::vector<std::pair<int, int>> faces_on<2>(const Grid<2>&, const Segment&);
+template std::vector<std::pair<int, int>> faces_on<3>(const Grid<3>&, const Segment&);
+template SceneWalls<2> make_walls<2>(const Scene&, const Grid<2>&, const std::vector<std::string>&);
+template SceneWalls<3> make_walls<3>(const Scene&, const Grid<3>&, const std::vector<std::string>&);
+
+}  // namespace quicksand

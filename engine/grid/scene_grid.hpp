@@ -1,0 +1,29 @@
+#pragma once
+// Lattice, walls and gates of a scene.
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "engine/grid/walls.hpp"
+#include "engine/scene/scene.hpp"
+
+namespace quicksand {
+
+template <int D>
+Grid<D> make_grid(const Scene& scene);
+
+template <int D>
+struct SceneWalls {
+  Walls<D> water;  ///< blocks, thin walls, closed gates, domain sides
+  Walls<D> soil;   ///< the same, and the outside of fixed soil bodies
+};
+/// All gates but `open_gates` are closed.
+template <int D>
+SceneWalls<D> make_walls(const Scene& scene, const Grid<D>& grid, const std::vector<std::string>& open_gates);
+
+/// (component, face) of every face on a segment.
+template <int D>
+std::vector<std::pair<int, int>> faces_on(const Grid<D>& grid, const Segment& line);
+
+}  // namespace quicksand

@@ -1,0 +1,111 @@
+#include "engine/grid/walls.hpp"
+
+namespace quicksand {
+namespace {
+
+/// A walk of at most one cell along each axis from a home cell, mirrored back at closed faces.
+template <int D>
+struct Walk {
+  int cell = 0;
+  std::array<bool, D> mirrored{};
+  std::array<int, D> wall{};       ///< face that mirrored, per axis
+  std::array<bool, D> no_slip{};
+  bool direct() const {
+    for (bool m : mirrored)
+      if (m) return false;
+    return true;
+  }
+};
+
+template <int D>
+Walk<D> walk(const Grid<D>& grid, const std::array<std::vector<std::uint8_t>, D>& closed, int home,
+             const std::array<int, D>& offset, const std::array<int, D>& order) {
+  Walk<D> w;
+  w.cell = home;
+  w.wall.fill(-1);
+  for (int axis : order) {
+    if (offset[axis] == 0) continue;
+    const int face = offset[axis] > 0 ? w.cell + grid.stride[axis] : w.cell;
+    if (closed[axis][face]) {
+      w.mirrored[axis] = true;
+      w.wall[axis] = face;
+      w.no_slip[axis] = closed[axis][face] == 2;
+    } else {
+      w.cell += offset[axis] * grid.stride[axis];
+    }
+  }
+  return w;
+}
+
+/// Direct if any order of the axes reaches the cell without a wall; otherwise the order that crosses
+/// `first` before the others, so that a component is mirrored tangentially at convex corners.
+template <int D>
+Walk<D> best_walk(const Grid<D>& grid, const std::array<std::vector<std::uint8_t>, D>& closed, int home,
+                  const std::array<int, D>& offset, int first) {
+  std::array<int, D> order;
+  order[0] = first;
+  for (int d = 0, k = 1; d < D; ++d)
+    if (d != first) order[k++] = d;
+  const Walk<D> preferred = walk<D>(grid, closed, home, offset, order);
+  if (preferred.direct()) return preferred;
+  std::sort(order.begin(), order.end());
+  do {
+    const Walk<D> other = walk<D>(grid, closed, home, offset, order);
+    if (other.direct()) return other;
+  } while (std::next_permutation(order.begin(), order.end()));
+  return preferred;
+}
+
+}  // namespace
+
+template <int D>
+Walls<D>::Walls(const Grid<D>& grid) : blocked_(grid.count(), 1), fold_of_(grid.count(), -1) {
+  for (auto& c : closed_) c.assign(grid.count(), 0);
+  for (auto& c : separated_) c.assign(grid.count(), 0);
+  for_each_cell(grid, [&](int i, const Cell<D>&) { blocked_[i] = 0; });
+}
+
+template <int D>
+void Walls<D>::rebuild(const Grid<D>& grid) {
+  folds_.clear();
+  std::fill(fold_of_.begin(), fold_of_.end(), -1);
+  for_each_cell(grid, [&](int home, const Cell<D>&) {
+    CellFolds f;
+    bool plain = true;
+    for (int d = 0; d < D; ++d)
+      for (int k = 0; k < kFaces; ++k) {
+        // k counts position along d (0…3 ↔ −1…2) fastest, then −1…1 along the other axes.
+        std::array<int, D> offset{};
+        int rest = k;
+        const int q = rest % 4 - 1;
+        rest /= 4;
+        offset[d] = q < 0 ? -1 : q > 1 ? 1 : 0;
+        for (int a = 0; a < D; ++a)
+          if (a != d) offset[a] = rest % 3 - 1, rest /= 3;
+        const Walk<D> w = best_walk<D>(grid, closed_, home, offset, d);
+        int position = q == 2 || q == 1 ? 1 : 0;  // which side of the reached cell the face is on
+        Fold& fold = f.face[d][k];
+        if (w.mirrored[d]) {
+          position = 1 - position;
+          fold.normal_wall = w.wall[d];
+        }
+        fold.target = w.cell + position * grid.stride[d];
+        for (int a = 0; a < D; ++a)
+          if (a != d && w.mirrored[a] && w.no_slip[a]) fold.tangential = -fold.tangential;
+        plain = plain && w.direct();
+      }
+    for (int k = 0; k < kCells; ++k) {
+      std::array<int, D> offset{};
+      for (int a = 0, rest = k; a < D; ++a, rest /= 3) offset[a] = rest % 3 - 1;
+      f.center[k] = best_walk<D>(grid, closed_, home, offset, 0).cell;
+    }
+    if (plain) return;
+    fold_of_[home] = static_cast<std::int32_t>(folds_.size());
+    folds_.push_back(f);
+  });
+}
+
+template class Walls<2>;
+template class Walls<3>;
+
+}  // namespace quicksand

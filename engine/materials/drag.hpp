@@ -1,0 +1,23 @@
+#pragma once
+#include "engine/scene/scene.hpp"
+
+namespace quicksand {
+
+/// Resistance of the grains to the water that passes them, per bulk volume and relative velocity.
+struct Drag {
+  double at_reference = 0;  ///< N·s/m⁴, n0² ρw g / k
+  double porosity = 0.4;    ///< –, n0
+  bool follows_porosity = true;
+
+  /// `g` is the magnitude of gravity that the conductivity is meant for, 9.81 m/s².
+  static Drag from(const Soil& soil, const Water& water);
+
+  /// R(n). Darcy: n² ρw g / k [FMS19]. Kozeny–Carman: k = k0 [n³/(1−n)²]/[n0³/(1−n0)²].
+  double resistance(double n) const {
+    if (!follows_porosity) return at_reference * n * n / (porosity * porosity);
+    const double grains = (1 - n) / (1 - porosity);
+    return at_reference * grains * grains * porosity / n;
+  }
+};
+
+}  // namespace quicksand

@@ -1,0 +1,72 @@
+#include "engine/materials/stability.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+namespace quicksand {
+namespace {
+
+/// Largest |eigenvalue| of one step for waves of wave number κ (1/m). State: vs, vw, S, P with
+/// σ′ = iS, p = iP, so that all coefficients are real:
+///   (Ms + ΔtR) vs' − ΔtR vw' − Δt φκ P' = Ms vs − Δt κ S      S' = S + Δt Ec κ vs'
+///   −ΔtR vs' + (Mw + ΔtR) vw' − Δt nκ P' = Mw vw              (n/KwΔt) (P' − P) = −κ (φ vs' + n vw')
+double amplification(const SaturatedSoil& soil, double kappa, double dt) {
+  const double n = soil.porosity, phi = 1 - n;
+  const double ms = phi * soil.grain_density, mw = n * soil.water_density, r = dt * soil.drag;
+  const double storage = n * soil.water_compliance / dt;
+  Eigen::Matrix4d after = Eigen::Matrix4d::Zero(), before = Eigen::Matrix4d::Zero();
+  after.row(0) << ms + r, -r, 0, -dt * phi * kappa;
+  after.row(1) << -r, mw + r, 0, -dt * n * kappa;
+  after.row(2) << -dt * soil.constrained_modulus * kappa, 0, 1, 0;
+  after.row(3) << kappa * phi, kappa * n, 0, storage;
+  before.row(0) << ms, 0, -dt * kappa, 0;
+  before(1, 1) = mw;
+  before(2, 2) = 1;
+  before(3, 3) = storage;
+  const Eigen::Matrix4d step = after.partialPivLu().solve(before);
+  return step.eigenvalues().cwiseAbs().maxCoeff();
+}
+
+}  // namespace
+
+double dry_step_limit(const SaturatedSoil& soil, double h) {
+  return h / std::sqrt(soil.constrained_modulus / ((1 - soil.porosity) * soil.grain_density));
+}
+
+double coupled_step_limit(const SaturatedSoil& soil, double h) {
+  constexpr double kRounding = 1e-9;  // of an eigenvalue of modulus one
+  const auto stable = [&](double dt) {
+    for (double part : {1.0, 0.5, 0.25})  // of the shortest wave's 2/h
+      if (amplification(soil, part * 2 / h, dt) > 1 + kRounding) return false;
+    return true;
+  };
+  double low = dry_step_limit(soil, h) * 0.1, high = low;
+  if (!stable(low)) return low;
+  constexpr double kLargest = 1e6;  // of the dry limit; no soil is bound there
+  while (stable(high) && high < kLargest * low) high *= 2;
+  double bound = high / 2;
+  for (int i = 0; i < 20; ++i) {
+    const double middle = 0.5 * (bound + high);
+    (stable(middle) ? bound : high) = middle;
+  }
+  return bound;
+}
+
+StepLimit::StepLimit(const SoilMaterial& soil, double water_density, double water_compliance, double h) {
+  for (int i = 0; i < kEntries; ++i) {
+    const double n = (i + 0.5) / kEntries;
+    const SaturatedSoil s{soil.elastic.constrained(), soil.grain_density,      water_density,
+                          water_compliance,           n, soil.drag.resistance(n)};
+    dry_[i] = dry_step_limit(s, h);
+    saturated_[i] = coupled_step_limit(s, h);
+  }
+}
+
+double StepLimit::look_up(const std::array<double, kEntries>& table, double porosity) {
+  const double at = std::clamp(porosity * kEntries - 0.5, 0.0, kEntries - 1.0001);
+  const int i = static_cast<int>(at);
+  return table[i] + (at - i) * (table[i + 1] - table[i]);
+}
+
+}  // namespace quicksand

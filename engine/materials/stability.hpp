@@ -1,0 +1,40 @@
+#pragma once
+#include <array>
+
+#include "engine/materials/soil_material.hpp"
+
+namespace quicksand {
+
+/// Saturated soil as the stability analysis sees it.
+struct SaturatedSoil {
+  double constrained_modulus = 0;  ///< Pa, Ec
+  double grain_density = 2650;     ///< kg/m³
+  double water_density = 1000;     ///< kg/m³
+  double water_compliance = 0;     ///< 1/Pa; 0: incompressible
+  double porosity = 0.4;           ///< –
+  double drag = 0;                 ///< N·s/m⁴, R
+};
+
+/// Largest stable step (s) of dry grains in cells of h metres: the shortest wave of the staggered lattice,
+/// h/√(Ec/((1−n)ρs)).
+double dry_step_limit(const SaturatedSoil& soil, double h);
+
+/// Largest stable step (s) with drag and pressure implicit and the stress explicit: von Neumann analysis of
+/// the scheme of step.cpp for plane waves on the lattice, bisected on the spectral radius.
+double coupled_step_limit(const SaturatedSoil& soil, double h);
+
+/// coupled_step_limit tabulated over porosity, for one soil; cheap enough to ask for every point.
+class StepLimit {
+ public:
+  StepLimit() = default;
+  StepLimit(const SoilMaterial& soil, double water_density, double water_compliance, double h);
+  double dry(double porosity) const { return look_up(dry_, porosity); }
+  double saturated(double porosity) const { return look_up(saturated_, porosity); }
+
+ private:
+  static constexpr int kEntries = 50;
+  static double look_up(const std::array<double, kEntries>& table, double porosity);
+  std::array<double, kEntries> dry_{}, saturated_{};
+};
+
+}  // namespace quicksand

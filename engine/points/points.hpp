@@ -1,0 +1,65 @@
+#pragma once
+// The two sets of material points, as structures of arrays.
+
+#include <cstdint>
+#include <vector>
+
+#include "engine/grid/grid.hpp"
+
+namespace quicksand {
+
+template <int D>
+inline constexpr int kStress = D == 2 ? 4 : 6;  ///< xx yy zz xy [yz zx]
+template <int D>
+using Stress = std::array<double, kStress<D>>;
+
+/// What both phases' points carry.
+template <int D>
+struct PointSet {
+  std::vector<Vec<D>> x;         ///< m
+  std::vector<Vec<D>> v;         ///< m/s
+  std::vector<Vec<D>> start;     ///< m, position at seeding
+  std::vector<double> mass;      ///< kg
+  std::vector<std::int32_t> body;
+
+  std::size_t size() const { return x.size(); }
+  void add(const Vec<D>& at, const Vec<D>& velocity, double m, int body_index) {
+    x.push_back(at);
+    v.push_back(velocity);
+    start.push_back(at);
+    mass.push_back(m);
+    body.push_back(body_index);
+  }
+  template <class F>
+  void each_array(F&& f) {
+    f(x), f(v), f(start), f(mass), f(body);
+  }
+};
+
+template <int D>
+struct WaterPoints : PointSet<D> {};
+
+template <int D>
+struct SoilPoints : PointSet<D> {
+  std::vector<double> porosity;        ///< –
+  std::vector<Stress<D>> stress;       ///< Pa, effective, tension positive
+  std::vector<double> plastic_strain;  ///< –, accumulated deviatoric
+  std::vector<std::int32_t> soil;      ///< index of the material
+
+  template <class F>
+  void each_array(F&& f) {
+    PointSet<D>::each_array(f);
+    f(porosity), f(stress), f(plastic_strain), f(soil);
+  }
+};
+
+/// Puts element order[i] at place i in every array.
+template <class Points>
+void reorder(Points& points, const std::vector<std::uint32_t>& order) {
+  points.each_array([&](auto& array) {
+    auto old = array;
+    for (std::size_t i = 0; i < order.size(); ++i) array[i] = old[order[i]];
+  });
+}
+
+}  // namespace quicksand

@@ -1,0 +1,20 @@
+#pragma once
+#include "engine/points/points.hpp"
+#include "engine/scene/scene.hpp"
+
+namespace quicksand {
+
+template <int D>
+struct SeededPoints {
+  SoilPoints<D> soil;    ///< moving grains
+  SoilPoints<D> fixed;   ///< grains of bodies held in place
+  WaterPoints<D> water;
+};
+
+/// Points of all bodies on a regular lattice, `points_per_cell` along each axis, each with the mass of its
+/// share of the cell. Saturated soil gets a soil and a water point at each place. `SoilPoints::soil` is the
+/// place of the material in Scene::soils.
+template <int D>
+SeededPoints<D> seed(const Scene& scene, const Grid<D>& grid);
+
+}  // namespace quicksand

@@ -1,0 +1,17 @@
+#pragma once
+// Why a run ended before its time, in plain words: when, where, which phase, likely cause, what to change.
+
+#include "engine/run/run.hpp"
+#include "engine/step/state.hpp"
+
+namespace quicksand {
+
+template <int D>
+Failure not_finite(const Scene& scene, const State<D>& state);
+template <int D>
+Failure collapsed_step(const Scene& scene, const State<D>& state, const StepBound& bound);
+template <int D>
+Failure pressure_not_found(const Scene& scene, const State<D>& state, double residual);
+Failure too_many_steps(const Scene& scene, double time);
+
+}  // namespace quicksand

@@ -1,0 +1,79 @@
+#include <cmath>
+#include <numeric>
+
+#include "engine/run/sampling.hpp"
+#include "engine/run/watch.hpp"
+
+namespace quicksand {
+namespace {
+
+double total(const std::vector<double>& mass) { return std::accumulate(mass.begin(), mass.end(), 0.0); }
+
+template <int D, class F>
+void each_set(const State<D>& s, F&& f) {
+  f(s.soil), f(s.water);
+}
+
+}  // namespace
+
+template <int D>
+double LedgerKeeper<D>::potential(const State<D>& s) const {
+  double e = 0;
+  each_set(s, [&](const auto& set) {
+    for (std::size_t p = 0; p < set.size(); ++p)
+      for (int d = 0; d < D; ++d) e -= set.mass[p] * s.constants.gravity[d] * set.x[p][d];
+  });
+  return e;
+}
+
+template <int D>
+LedgerKeeper<D>::LedgerKeeper(const Scene&, const State<D>& s) {
+  ledger_.water_mass = ledger_.water_mass_initial = total(s.water.mass);
+  ledger_.solid_mass = ledger_.solid_mass_initial = total(s.soil.mass) + total(s.fixed.mass);
+  ledger_.water_volume = ledger_.water_volume_initial = water_volume(s);
+  each_set(s, [&](const auto& set) {
+    for (std::size_t p = 0; p < set.size(); ++p)
+      for (int d = 0; d < D; ++d) start_momentum_[d] += set.mass[p] * set.v[p][d];
+  });
+}
+
+template <int D>
+void LedgerKeeper<D>::add(const State<D>& s, const StepReport<D>& step) {
+  Ledger& l = ledger_;
+  l.clipped_points = s.interventions.clipped_points;
+  l.clamped_values = s.interventions.clamped_values;
+  l.cut_steps = s.interventions.cut_steps;
+  l.energy_kinetic = step.kinetic;
+  l.energy_strain = step.strain;
+  const double moving = step.moving_mass;
+  double residual = 0, weight = 0;
+  for (int d = 0; d < D; ++d) {
+    const double impulse = moving * s.constants.gravity[d] * step.dt;
+    weight += impulse * impulse;
+    l.impulse_gravity[d] += impulse;
+    l.impulse_walls[d] += step.impulse_walls[d];
+    l.impulse_loads[d] += step.impulse_loads[d];
+    l.momentum_change[d] = step.momentum[d] - start_momentum_[d];
+    const double open = l.momentum_change[d] - l.impulse_gravity[d] - l.impulse_walls[d] - l.impulse_loads[d];
+    residual += open * open;
+  }
+  weight_impulse_ += std::sqrt(weight);
+  l.momentum_residual = weight_impulse_ > 0 ? std::sqrt(residual) / weight_impulse_ : 0;
+}
+
+template <int D>
+void LedgerKeeper<D>::measure(const State<D>& s) {
+  Ledger& l = ledger_;
+  l.water_mass = total(s.water.mass);
+  l.solid_mass = total(s.soil.mass) + total(s.fixed.mass);
+  l.water_volume = water_volume(s);
+  l.energy_potential = potential(s);
+  if (l.water_volume_initial > 0)
+    l.water_volume_drift_max = std::max(
+        l.water_volume_drift_max, std::abs(l.water_volume - l.water_volume_initial) / l.water_volume_initial);
+}
+
+template class LedgerKeeper<2>;
+template class LedgerKeeper<3>;
+
+}  // namespace quicksand

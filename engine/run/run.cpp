@@ -1,0 +1,211 @@
+#include "engine/run/run.hpp"
+
+#include <tbb/task_arena.h>
+
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <map>
+
+#include "engine/run/diagnosis.hpp"
+#include "engine/run/frame.hpp"
+#include "engine/run/setup.hpp"
+#include "engine/run/time_step.hpp"
+#include "engine/run/watch.hpp"
+
+namespace quicksand {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+/// One run from its first to its last step.
+template <int D>
+class Run {
+ public:
+  Run(const Scene& scene, ResultSink& sink, RunMonitor& monitor)
+      : scene_(scene), sink_(sink), monitor_(monitor), state_(make_state<D>(scene)), ledger_(scene, state_), watch_(scene) {
+    for (const Stage& stage : scene.stages) end_time_ += stage.duration;
+    last_.soil_limit = first_soil_limit();
+  }
+
+  RunReport go() {
+    sink_.begin(watch_.info());
+    stage_name_ = scene_.stages.front().name;
+    write_sample();
+    write_frame();
+    for (const Stage& stage : scene_.stages) {
+      if (!run_stage(stage)) break;
+    }
+    if (last_frame_time_ < state_.time) write_frame();
+    finish();
+    return report_;
+  }
+
+ private:
+  /// False when the run has ended before its time.
+  bool run_stage(const Stage& stage) {
+    stage_name_ = stage.name;
+    enter_stage(scene_, stage, state_);
+    monitor_.log("stage " + stage.name + " begins at " + text(state_.time) + " s");
+    const double begin = state_.time, end = begin + stage.duration;
+    while (end - state_.time > kTimeRounding * stage.duration) {
+      if (monitor_.cancelled()) {
+        report_.status = RunStatus::canceled;
+        return false;
+      }
+      if (report_.steps >= scene_.numerics.max_steps) return fail(too_many_steps(scene_, state_.time));
+      if (!step(end)) return false;
+      const bool rested = stage.until_rest && state_.time - begin >= stage.until_rest->at_least &&
+                          last_.max_speed < stage.until_rest->speed;
+      if (rested) {
+        monitor_.log("at rest after " + text(state_.time - begin) + " s");
+        end_time_ -= end - state_.time;
+        break;
+      }
+    }
+    return true;
+  }
+
+  bool step(double stage_end) {
+    const StepBound chosen = choose_step(scene_, {last_.soil_limit, last_.max_speed});
+    if (chosen.seconds < kCollapse * first_step(chosen.seconds)) return fail(collapsed_step(scene_, state_, chosen));
+    last_ = advance(state_, until_event(chosen.seconds, stage_end));
+    ++report_.steps;
+    report_.time_step_min = report_.steps == 1 ? last_.dt : std::min(report_.time_step_min, last_.dt);
+    report_.time_step_max = std::max(report_.time_step_max, last_.dt);
+    bound_seconds_[chosen.name] += last_.dt;
+    iterations_ += last_.pressure.iterations;
+    ledger_.add(state_, last_);
+    if (!last_.finite) return fail(not_finite(scene_, state_));
+    if (!last_.pressure.converged) return fail(pressure_not_found(scene_, state_, last_.pressure.residual));
+    if (due(last_sample_time_, scene_.output.series_interval)) write_sample();
+    if (due(last_frame_time_, scene_.output.frame_interval)) write_frame();
+    report_progress(chosen.name);
+    return true;
+  }
+
+  /// Shortens a step so that it ends on the next frame, sample or stage; two equal steps rather than a sliver.
+  double until_event(double dt, double stage_end) const {
+    double rest = stage_end - state_.time;
+    for (const auto& [last, interval] : {std::pair{last_frame_time_, scene_.output.frame_interval},
+                                         std::pair{last_sample_time_, scene_.output.series_interval}})
+      rest = std::min(rest, next_event(last, interval) - state_.time);
+    if (rest <= dt) return rest;
+    return rest < 2 * dt ? 0.5 * rest : dt;
+  }
+  static double next_event(double last, double interval) {
+    return (std::floor(last / interval + kTimeRounding) + 1) * interval;
+  }
+  bool due(double last, double interval) const {
+    return state_.time >= next_event(last, interval) - kTimeRounding * interval;
+  }
+
+  void write_sample() {
+    ledger_.measure(state_);
+    sink_.sample(state_.time, watch_.sample(state_, last_, ledger_.ledger()));
+    last_sample_time_ = state_.time;
+  }
+  void write_frame() {
+    sink_.frame(make_frame(scene_, state_, report_.frames, stage_name_));
+    ++report_.frames;
+    last_frame_time_ = state_.time;
+  }
+
+  void report_progress(const std::string& bound) {
+    Progress p;
+    p.sim_time = state_.time;
+    p.end_time = end_time_;
+    p.fraction = end_time_ > 0 ? std::min(1.0, state_.time / end_time_) : 1;
+    p.stage = stage_name_;
+    p.step = report_.steps;
+    p.time_step = last_.dt;
+    p.bound = bound;
+    p.frames = report_.frames;
+    const double wall = seconds_since(start_);
+    p.eta_s = p.fraction > 0 ? wall * (1 - p.fraction) / p.fraction : 0;
+    monitor_.progress(p);
+  }
+
+  bool fail(Failure failure) {
+    report_.status = RunStatus::failed;
+    report_.failure = std::move(failure);
+    monitor_.log("failed: " + report_.failure.message);
+    return false;
+  }
+
+  void finish() {
+    ledger_.measure(state_);
+    report_.ledger = ledger_.ledger();
+    report_.heave = watch_.heave();
+    report_.sim_time = state_.time;
+    report_.wall_seconds = seconds_since(start_);
+    report_.point_steps = static_cast<double>(report_.steps) * static_cast<double>(state_.soil.size() + state_.water.size());
+    report_.pressure_iterations_mean = report_.steps ? iterations_ / static_cast<double>(report_.steps) : 0;
+    for (const auto& [name, seconds] : bound_seconds_) report_.steps_bound_by.push_back({name, seconds});
+    for (std::size_t i = 0; i < kPhaseNames.size(); ++i) report_.phases.push_back({kPhaseNames[i], state_.phase_seconds[i]});
+  }
+
+  double first_soil_limit() const {
+    double limit = std::numeric_limits<double>::infinity();
+    for (std::size_t p = 0; p < state_.soil.size(); ++p) {
+      const StepLimit& l = state_.constants.step_limits[state_.soil.soil[p]];
+      const bool wet = state_.cell[state_.grid.index(state_.grid.cell_of(state_.soil.x[p]))].unknown >= 0;
+      limit = std::min(limit, wet ? l.saturated(state_.soil.porosity[p]) : l.dry(state_.soil.porosity[p]));
+    }
+    return limit;
+  }
+  double first_step(double dt) {
+    if (first_step_ == 0) first_step_ = dt;
+    return first_step_;
+  }
+  static std::string text(double value) {
+    char buffer[32];
+    std::snprintf(buffer, sizeof buffer, "%.6g", value);
+    return buffer;
+  }
+
+  /// Part of an interval that counts as rounding of time.
+  static constexpr double kTimeRounding = 1e-9;
+  /// A step this much shorter than the first one says that the state has run away.
+  static constexpr double kCollapse = 1e-5;
+
+  const Scene& scene_;
+  ResultSink& sink_;
+  RunMonitor& monitor_;
+  State<D> state_;
+  LedgerKeeper<D> ledger_;
+  Watch<D> watch_;
+  StepReport<D> last_;
+  RunReport report_;
+  std::string stage_name_;
+  double end_time_ = 0, last_frame_time_ = 0, last_sample_time_ = 0, first_step_ = 0, iterations_ = 0;
+  std::map<std::string, double> bound_seconds_;
+  Clock::time_point start_ = Clock::now();
+};
+
+template <int D>
+RunReport run_in(const Scene& scene, ResultSink& sink, RunMonitor& monitor) {
+  return Run<D>(scene, sink, monitor).go();
+}
+
+}  // namespace
+
+RunReport run(const Scene& scene, ResultSink& sink, RunMonitor& monitor, const RunOptions& options) {
+  tbb::task_arena arena(options.threads > 0 ? options.threads : tbb::task_arena::automatic);
+  return arena.execute([&]() -> RunReport {
+    try {
+      return scene.domain.dimension == Dimension::space ? run_in<3>(scene, sink, monitor)
+                                                        : run_in<2>(scene, sink, monitor);
+    } catch (const std::exception& e) {
+      RunReport report;
+      report.status = RunStatus::failed;
+      report.failure = {"output", e.what(), 0, {}};
+      monitor.log(std::string("failed: ") + e.what());
+      return report;
+    }
+  });
+}
+
+}  // namespace quicksand

@@ -1,0 +1,30 @@
+#pragma once
+// Values of the grid's fields at any place: what frames, probes and sections show.
+
+#include "engine/step/state.hpp"
+
+namespace quicksand {
+
+/// Pore pressure at x, Pa: linear from the centre of the cell along each axis, with the gradient of the side
+/// on which x lies, so that still water is exact up to walls and up to its surface. 0 in air.
+template <int D>
+double pressure_at(const State<D>& s, const Vec<D>& x);
+
+/// Hydraulic head at x, m: elevation against gravity + p/(ρw g); p/(ρw·9.81) without gravity.
+template <int D>
+double head_at(const State<D>& s, const Vec<D>& x, double pressure);
+
+template <int D>
+Vec<D> water_velocity_at(const State<D>& s, const Vec<D>& x);
+template <int D>
+Vec<D> soil_velocity_at(const State<D>& s, const Vec<D>& x);
+
+/// Porosity around x, –: 1 less the grains' share of the cell.
+template <int D>
+double porosity_at(const State<D>& s, const Vec<D>& x);
+
+/// Volume below the water surface that grains leave to water, m³ (per metre in the plane).
+template <int D>
+double water_volume(const State<D>& s);
+
+}  // namespace quicksand

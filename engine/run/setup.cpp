@@ -1,0 +1,107 @@
+#include "engine/run/setup.hpp"
+
+#include <cmath>
+
+#include "engine/grid/scene_grid.hpp"
+#include "engine/points/seeding.hpp"
+#include "engine/run/initial_state.hpp"
+#include "engine/step/phases.hpp"
+
+namespace quicksand {
+namespace {
+
+template <int D>
+Constants<D> make_constants(const Scene& scene, const Grid<D>& grid) {
+  Constants<D> c;
+  for (int d = 0; d < D; ++d) c.gravity[d] = scene.gravity[d];
+  c.water_density = scene.water.density;
+  c.water_compliance = scene.water.bulk_modulus ? 1 / *scene.water.bulk_modulus : 0;
+  c.viscosity = scene.water.viscosity;
+  c.pic_rate = scene.numerics.pic_rate;
+  c.pressure_tolerance = scene.numerics.pressure_tolerance;
+  c.drift_time = scene.numerics.drift_time;
+  for (const auto& [name, soil] : scene.soils) {
+    c.soils.push_back(SoilMaterial::from(soil, scene.water));
+    c.step_limits.emplace_back(c.soils.back(), c.water_density, c.water_compliance, grid.h);
+  }
+  return c;
+}
+
+/// Markers every half cell along the top of a body: the highest soil points of each column, moved up by
+/// half their spacing.
+template <int D>
+SurfaceLoad<D> make_load(const Scene& scene, const Load& load, const State<D>& s) {
+  SurfaceLoad<D> result;
+  const double spacing = s.grid.h / scene.numerics.points_per_cell;
+  for (std::size_t p = 0; p < s.soil.size(); ++p) {
+    if (scene.bodies[s.soil.body[p]].name != load.body) continue;
+    Vec<D> top = s.soil.x[p];
+    top[D == 2 ? 1 : 2] += 0.5 * spacing;
+    bool replaced = false;
+    for (Vec<D>& m : result.marker) {
+      bool same_column = true;
+      for (int d = 0; d < D; ++d)
+        if (d != (D == 2 ? 1 : 2)) same_column = same_column && std::abs(m[d] - top[d]) < 0.5 * spacing;
+      if (!same_column) continue;
+      m[D == 2 ? 1 : 2] = std::max(m[D == 2 ? 1 : 2], top[D == 2 ? 1 : 2]);
+      replaced = true;
+    }
+    if (!replaced) result.marker.push_back(top);
+  }
+  const double area = D == 2 ? spacing : spacing * spacing;
+  for (int d = 0; d < D; ++d) result.force[d] = load.traction[d] * area;
+  result.ramp = load.ramp;
+  return result;
+}
+
+}  // namespace
+
+template <int D>
+State<D> make_state(const Scene& scene) {
+  State<D> s;
+  s.grid = make_grid<D>(scene);
+  s.blocks = Blocks<D>(s.grid);
+  s.constants = make_constants<D>(scene, s.grid);
+  SeededPoints<D> points = seed<D>(scene, s.grid);
+  s.soil = std::move(points.soil);
+  s.fixed = std::move(points.fixed);
+  s.water = std::move(points.water);
+  for (int d = 0; d < D; ++d) {
+    s.sums[d].assign(s.grid.count(), {});
+    s.flow[d].assign(s.grid.count(), {});
+  }
+  s.cell_sums.assign(s.grid.count(), {});
+  s.cell.assign(s.grid.count(), {});
+  s.pressure.assign(s.grid.count(), 0);
+  for (const Load& load : scene.loads)
+    if (load.kind == Load::Kind::traction) s.loads.push_back(make_load<D>(scene, load, s));
+  enter_stage(scene, scene.stages.front(), s);
+  if (s.fixed.size()) measure_fixed(s);
+  points_to_faces(s);
+  find_surface(s);
+  set_initial_pressure(scene, s);
+  set_initial_stress(scene, s);
+  return s;
+}
+
+template <int D>
+void enter_stage(const Scene& scene, const Stage& stage, State<D>& s) {
+  SceneWalls<D> walls = make_walls<D>(scene, s.grid, stage.open_gates);
+  s.water_walls = std::move(walls.water);
+  s.soil_walls = std::move(walls.soil);
+  for (std::size_t i = 0, k = 0; i < scene.loads.size(); ++i) {
+    if (scene.loads[i].kind != Load::Kind::traction) continue;
+    SurfaceLoad<D>& load = s.loads[k++];
+    const bool acts = !stage.loads || std::find(stage.loads->begin(), stage.loads->end(), scene.loads[i].name) !=
+                                          stage.loads->end();
+    if (acts && !load.active) load.start = s.time;
+    load.active = acts;
+  }
+}
+
+template State<2> make_state<2>(const Scene&);
+template State<3> make_state<3>(const Scene&);
+template void enter_stage<2>(const Scene&, const Stage&, State<2>&);
+template void enter_stage<3>(const Scene&, const Stage&, State<3>&);
+
+}  // namespace quicksand

@@ -1,0 +1,15 @@
+#pragma once
+#include "engine/scene/scene.hpp"
+#include "engine/step/state.hpp"
+
+namespace quicksand {
+
+/// State of a scene at time 0: points, walls of the first stage, initial pressure and stress.
+template <int D>
+State<D> make_state(const Scene& scene);
+
+/// Opens and closes gates and switches loads for a stage.
+template <int D>
+void enter_stage(const Scene& scene, const Stage& stage, State<D>& state);
+
+}  // namespace quicksand

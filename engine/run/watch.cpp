@@ -1,0 +1,188 @@
+#include "engine/run/watch.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/run/sampling.hpp"
+
+namespace quicksand {
+namespace {
+
+template <int D>
+Vec<D> place(const Vec3& at) {
+  Vec<D> x;
+  for (int d = 0; d < D; ++d) x[d] = at[d];
+  return x;
+}
+
+/// Upward unit vector, against gravity; the last axis without gravity.
+template <int D>
+Vec<D> up(const Vec<D>& gravity) {
+  double g = 0;
+  for (double c : gravity) g += c * c;
+  Vec<D> u{};
+  u[D - 1] = 1;
+  if (g > 0)
+    for (int d = 0; d < D; ++d) u[d] = -gravity[d] / std::sqrt(g);
+  return u;
+}
+
+struct Rise {
+  double mean = 0, largest = 0;  ///< m: mean upward, largest |displacement|
+};
+
+template <int D>
+Rise rise_of(const State<D>& s, int body) {
+  const Vec<D> u = up<D>(s.constants.gravity);
+  Rise r;
+  std::size_t count = 0;
+  for (std::size_t p = 0; p < s.soil.size(); ++p) {
+    if (s.soil.body[p] != body) continue;
+    double along = 0, square = 0;
+    for (int d = 0; d < D; ++d) {
+      const double move = s.soil.x[p][d] - s.soil.start[p][d];
+      along += move * u[d];
+      square += move * move;
+    }
+    r.mean += along;
+    r.largest = std::max(r.largest, std::sqrt(square));
+    ++count;
+  }
+  if (count) r.mean /= static_cast<double>(count);
+  return r;
+}
+
+struct Quantity {
+  const char* unit;
+  int components;
+};
+Quantity quantity(const std::string& name) {
+  if (name == "pore_pressure") return {"Pa", 1};
+  if (name == "head") return {"m", 1};
+  if (name == "porosity") return {"1", 1};
+  return {"m/s", 3};
+}
+
+template <int D>
+void append_probe(const State<D>& s, const Probe& probe, std::vector<double>& out) {
+  const Vec<D> x = place<D>(probe.at);
+  if (probe.quantity == "pore_pressure") {
+    out.push_back(pressure_at<D>(s, x));
+  } else if (probe.quantity == "head") {
+    out.push_back(head_at<D>(s, x, pressure_at<D>(s, x)));
+  } else if (probe.quantity == "porosity") {
+    out.push_back(porosity_at<D>(s, x));
+  } else {
+    const Vec<D> v = probe.quantity == "soil_velocity" ? soil_velocity_at<D>(s, x) : water_velocity_at<D>(s, x);
+    for (int d = 0; d < 3; ++d) out.push_back(d < D ? v[d] : 0);
+  }
+}
+
+}  // namespace
+
+template <int D>
+Watch<D>::Watch(const Scene& scene) : scene_(scene) {
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b)
+    if (scene.bodies[b].kind != BodyKind::water && !scene.bodies[b].fixed) moving_soil_.push_back(static_cast<int>(b));
+  if (!scene.output.heave) return;
+  HeaveReport report;
+  for (const Body& body : scene.bodies)
+    if (body.name == scene.output.heave->body) {
+      const Soil& soil = scene.soils.at(body.soil);
+      report.critical_gradient = (1 - soil.porosity) * (soil.grain_density / scene.water.density - 1);
+    }
+  heave_.push_back(report);
+}
+
+template <int D>
+std::vector<SeriesInfo> Watch<D>::info() const {
+  std::vector<SeriesInfo> all;
+  for (const Probe& probe : scene_.output.probes) {
+    const Quantity q = quantity(probe.quantity);
+    all.push_back({"probe." + probe.name, q.unit, q.components});
+  }
+  for (int b : moving_soil_) {
+    all.push_back({"body." + scene_.bodies[b].name + ".rise", "m", 1});
+    all.push_back({"body." + scene_.bodies[b].name + ".largest_displacement", "m", 1});
+  }
+  all.push_back({"ledger.water_volume", "m³", 1});
+  all.push_back({"ledger.water_mass", "kg", 1});
+  all.push_back({"ledger.solid_mass", "kg", 1});
+  all.push_back({"ledger.energy", "J", 1});
+  all.push_back({"ledger.energy_kinetic", "J", 1});
+  all.push_back({"ledger.energy_potential", "J", 1});
+  all.push_back({"ledger.energy_strain", "J", 1});
+  all.push_back({"ledger.momentum", "N·s", 3});
+  all.push_back({"ledger.impulse_gravity", "N·s", 3});
+  all.push_back({"ledger.impulse_walls", "N·s", 3});
+  all.push_back({"ledger.impulse_loads", "N·s", 3});
+  all.push_back({"ledger.clipped_points", "1", 1});
+  all.push_back({"ledger.clamped_values", "1", 1});
+  all.push_back({"ledger.cut_steps", "1", 1});
+  all.push_back({"time_step", "s", 1});
+  all.push_back({"pressure_iterations", "1", 1});
+  all.push_back({"max_speed", "m/s", 1});
+  all.push_back({"max_soil_speed", "m/s", 1});
+  return all;
+}
+
+template <int D>
+std::vector<double> Watch<D>::sample(const State<D>& s, const StepReport<D>& step, const Ledger& l) {
+  std::vector<double> out;
+  for (const Probe& probe : scene_.output.probes) append_probe(s, probe, out);
+  for (int b : moving_soil_) {
+    const Rise r = rise_of(s, b);
+    out.push_back(r.mean);
+    out.push_back(r.largest);
+  }
+  const double energy = l.energy_kinetic + l.energy_potential + l.energy_strain;
+  out.insert(out.end(), {l.water_volume, l.water_mass, l.solid_mass, energy, l.energy_kinetic, l.energy_potential,
+                         l.energy_strain});
+  for (int d = 0; d < 3; ++d) out.push_back(d < D ? step.momentum[d] : 0);
+  for (const auto* impulse : {&l.impulse_gravity, &l.impulse_walls, &l.impulse_loads})
+    out.insert(out.end(), impulse->begin(), impulse->end());
+  out.insert(out.end(), {static_cast<double>(l.clipped_points), static_cast<double>(l.clamped_values),
+                         static_cast<double>(l.cut_steps), step.dt, static_cast<double>(step.pressure.iterations),
+                         step.max_speed, step.max_soil_speed});
+  sample_heave(s);
+  return out;
+}
+
+template <int D>
+double Watch<D>::head_of(const State<D>& s, const std::string& name) const {
+  for (const Probe& probe : scene_.output.probes)
+    if (probe.name == name) return head_at<D>(s, place<D>(probe.at), pressure_at<D>(s, place<D>(probe.at)));
+  return 0;
+}
+
+template <int D>
+void Watch<D>::sample_heave(const State<D>& s) {
+  if (heave_.empty()) return;
+  const HeaveWatch& watch = *scene_.output.heave;
+  HeaveReport& report = heave_.front();
+  for (int b : moving_soil_) {
+    if (scene_.bodies[b].name != watch.body) continue;
+    const Rise r = rise_of(s, b);
+    report.final_rise = r.mean;
+    report.max_rise = std::max(report.max_rise, r.mean);
+    report.max_point_displacement = std::max(report.max_point_displacement, r.largest);
+    if (report.moved) return;
+    const double difference = head_of(s, watch.below) - head_of(s, watch.above);
+    const bool moved = r.mean > watch.threshold;
+    if (!moved && difference < report.head_difference) return;
+    double distance = 0;
+    const Vec<D> u = up<D>(s.constants.gravity);
+    for (const Probe& probe : scene_.output.probes)
+      for (int d = 0; d < D; ++d)
+        distance += probe.name == watch.above ? u[d] * probe.at[d] : probe.name == watch.below ? -u[d] * probe.at[d] : 0;
+    report.head_difference = difference;
+    report.gradient = difference / distance;
+    report.moved = moved;
+    report.time = s.time;
+  }
+}
+
+template class Watch<2>;
+template class Watch<3>;
+
+}  // namespace quicksand

@@ -1,0 +1,44 @@
+#pragma once
+// Time histories of a run: probes, bodies, the ledger; and the headline figures of a heave.
+
+#include "engine/run/run.hpp"
+#include "engine/step/step.hpp"
+
+namespace quicksand {
+
+/// Keeps what is conserved and what was done to the state.
+template <int D>
+class LedgerKeeper {
+ public:
+  LedgerKeeper(const Scene& scene, const State<D>& start);
+  /// After every step.
+  void add(const State<D>& state, const StepReport<D>& step);
+  /// Volumes, masses, potential energy; before each sample.
+  void measure(const State<D>& state);
+  const Ledger& ledger() const { return ledger_; }
+
+ private:
+  double potential(const State<D>& state) const;
+  Ledger ledger_;
+  Vec<D> start_momentum_{};
+  double weight_impulse_ = 0;  ///< N·s, ∫ |weight| dt
+};
+
+/// Samples all series of a scene; `info` and `sample` agree in order.
+template <int D>
+class Watch {
+ public:
+  explicit Watch(const Scene& scene);
+  std::vector<SeriesInfo> info() const;
+  std::vector<double> sample(const State<D>& state, const StepReport<D>& step, const Ledger& ledger);
+  const std::vector<HeaveReport>& heave() const { return heave_; }
+
+ private:
+  void sample_heave(const State<D>& state);
+  double head_of(const State<D>& state, const std::string& probe) const;
+  const Scene& scene_;
+  std::vector<int> moving_soil_;  ///< bodies
+  std::vector<HeaveReport> heave_;
+};
+
+}  // namespace quicksand

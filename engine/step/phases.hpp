@@ -1,0 +1,55 @@
+#pragma once
+// The phases of one time step, in their order. Each reads what the ones before it wrote.
+
+#include "engine/step/pressure.hpp"
+#include "engine/step/state.hpp"
+
+namespace quicksand {
+
+template <int D>
+struct StepReport;
+
+/// 1. Points → `sums`, `cell_sums`.
+template <int D>
+void points_to_faces(State<D>& s);
+/// Once per run: what fixed grains occupy → `fixed_face`, `fixed_cell`.
+template <int D>
+void measure_fixed(State<D>& s);
+/// 2. Water surface, room and volume drift → `cell`.
+template <int D>
+void find_surface(State<D>& s);
+/// 3. Provisional velocities with drag inside, responses to a pressure gradient → `flow`.
+template <int D>
+void predict_velocities(State<D>& s, double dt);
+/// 5a. Velocities after the pressure gradient; extrapolated a little way into the air → `flow`.
+template <int D>
+void correct_velocities(State<D>& s);
+/// 5b. Faces → points: velocity, stress, porosity, position.
+template <int D>
+void faces_to_points(State<D>& s, double dt, StepReport<D>& report);
+
+/// Pressure gradient across face `face` of component d as the velocities feel it, Pa/m: between two wet
+/// cells, or from a wet cell to p = 0 at the water surface; at a closed face the weight of still water.
+template <int D>
+double pressure_gradient(const State<D>& s, int d, int face);
+
+/// Acceleration of the water by its viscosity at a face that carries water, m/s².
+template <int D>
+double viscous_acceleration(const State<D>& s, int d, int face);
+
+/// Least room for water, –: the smallest porosity a case may ask for. Below it grains have been pushed
+/// into each other, and the flux of water through them would lose its meaning.
+inline constexpr double kMinRoom = 0.02;
+/// Largest porosity of a soil point: one grain alone in the water.
+inline constexpr double kMaxPorosity = 0.999;
+/// Faces with less than this part of a full face's mass carry no velocity of their own.
+inline constexpr double kMassCutoff = 1e-10;
+
+/// Part of the way from a wet cell's centre to the next one's where the water surface lies; kept above
+/// this so that a surface just touching a centre does not make a stiff row.
+inline constexpr double kMinSurfaceDistance = 0.05;
+inline double surface_distance(double depth_wet, double depth_air) {
+  return std::max(kMinSurfaceDistance, depth_wet / (depth_wet - depth_air));
+}
+
+}  // namespace quicksand

@@ -1,0 +1,130 @@
+#pragma once
+// Everything a run holds between two steps, and the fields of the grid within one.
+//
+// Symbols (suffix _p point, _f face, _c cell): φ = 1−n grain fraction, n porosity, p water pressure (Pa,
+// compression positive), vs vw velocities of grains and water, q = φ vs + n vw flux of the mixture,
+// R drag (N·s/m⁴), h cell edge, V = h^D.
+
+#include <cstdint>
+#include <vector>
+
+#include "engine/grid/walls.hpp"
+#include "engine/materials/stability.hpp"
+#include "engine/points/blocks.hpp"
+#include "engine/points/points.hpp"
+#include "engine/step/pressure_system.hpp"
+
+namespace quicksand {
+
+/// What points leave on a face. Summed over points; per face, not per volume.
+struct FaceSums {
+  double soil_mass = 0;       ///< kg
+  double grains = 0;          ///< m³
+  double soil_momentum = 0;   ///< kg·m/s
+  double soil_force = 0;      ///< N, of the effective stress
+  double drag = 0;            ///< N·s/m, bulk volume × R
+  double water_mass = 0;      ///< kg
+  double water_momentum = 0;  ///< kg·m/s
+};
+
+/// What grains that never move occupy and resist; computed once.
+struct FixedFace {
+  double phi = 0;   ///< –
+  double drag = 0;  ///< N·s/m⁴
+};
+
+/// Velocities of a face and how they answer to a pressure gradient G: v = v̂ − response·G.
+struct FaceFlow {
+  double soil_old = 0, soil = 0;    ///< m/s
+  double water_old = 0, water = 0;  ///< m/s
+  double soil_response = 0, water_response = 0;  ///< m/s per Pa/m
+  double phi = 0, n = 1;            ///< –, moving grains; room for water
+  std::uint8_t wet = 0;             ///< 1: a side has pressure; 2, 3: extrapolated from such
+  bool soil_held = false;           ///< grains are in contact with a wall here
+
+  double flux() const { return phi * soil + n * water; }
+  double flux_response() const { return phi * soil_response + n * water_response; }
+};
+
+struct CellSums {
+  double water = 0, grains = 0, soil_bulk = 0;  ///< m³, at the cell's centre
+};
+
+struct CellState {
+  double fill = 0;      ///< –, part of a kernel's volume below the water surface
+  double depth = -1.5;  ///< cells from the water surface, positive in water, within ±1.5
+  double excess = 0;    ///< –, volume of water and grains beyond the room, where fully wet
+  double n = 1;         ///< –, room for water
+  int unknown = -1;     ///< row in the pressure system; −1: air or wall
+};
+
+/// Counters of everything that is done to the state other than by the equations.
+struct Interventions {
+  long clipped_points = 0;  ///< put back in front of a wall
+  long clamped_values = 0;  ///< porosities held within bounds
+  long cut_steps = 0;       ///< steps begun again with half the time
+  Interventions& operator+=(const Interventions& o) {
+    clipped_points += o.clipped_points;
+    clamped_values += o.clamped_values;
+    cut_steps += o.cut_steps;
+    return *this;
+  }
+};
+
+/// Constants of a run.
+template <int D>
+struct Constants {
+  Vec<D> gravity{};            ///< m/s²
+  double water_density = 1000; ///< kg/m³
+  double water_compliance = 0; ///< 1/Pa, 1/Kw; 0: incompressible
+  double viscosity = 0;        ///< Pa·s
+  double pic_rate = 0;         ///< 1/s
+  double pressure_tolerance = 1e-6;
+  double drift_time = 0;       ///< s; 0: no feedback
+  std::vector<SoilMaterial> soils;
+  std::vector<StepLimit> step_limits;  ///< per soil
+};
+
+/// A load on the top of a soil body: massless markers that ride on its surface.
+template <int D>
+struct SurfaceLoad {
+  std::vector<Vec<D>> marker;  ///< m
+  Vec<D> force{};              ///< N per marker at full load
+  double start = 0, ramp = 0;  ///< s
+  bool active = false;
+};
+
+/// Parts of a step whose wall time is kept.
+enum class Phase { to_grid, surface, velocities, pressure, to_points };
+inline constexpr std::array<const char*, 5> kPhaseNames{"to grid", "surface", "velocities", "pressure", "to points"};
+
+template <int D>
+struct State {
+  Grid<D> grid;
+  Blocks<D> blocks;
+  Walls<D> water_walls;  ///< what water and its pressure cannot pass
+  Walls<D> soil_walls;   ///< the same and the surfaces of fixed soil
+  Constants<D> constants;
+
+  SoilPoints<D> soil;    ///< moving grains
+  SoilPoints<D> fixed;   ///< grains held in place
+  WaterPoints<D> water;
+  BlockList soil_blocks, water_blocks;
+  std::vector<SurfaceLoad<D>> loads;
+
+  std::array<std::vector<FaceSums>, D> sums;
+  std::array<std::vector<FaceFlow>, D> flow;
+  std::array<std::vector<FixedFace>, D> fixed_face;
+  std::vector<CellSums> cell_sums;
+  std::vector<CellSums> fixed_cell;
+  std::vector<CellState> cell;
+  std::vector<double> pressure;      ///< Pa per cell; 0 in air
+  std::vector<double> pressure_old;  ///< Pa, at the start of the step
+  PressureSystem<D> pressure_system;
+
+  double time = 0;  ///< s
+  Interventions interventions;
+  std::array<double, kPhaseNames.size()> phase_seconds{};  ///< wall time
+};
+
+}  // namespace quicksand

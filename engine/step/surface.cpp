@@ -1,0 +1,70 @@
+// Where the water surface is, how much room cells have, and how far volumes have drifted.
+
+#include <cmath>
+
+#include "engine/step/phases.hpp"
+
+namespace quicksand {
+namespace {
+
+/// Signed distance (cells) from a plane water surface at which a quadratic kernel is filled to `fill`:
+/// the inverse of the spline's integral, which is ½ + ¾ξ − ξ³/3 for |ξ| ≤ ½ and 1 − (3/2−ξ)³/6 beyond.
+double depth_of_fill(double fill) {
+  if (fill < 0.5) return -depth_of_fill(1 - fill);
+  const double rest = 1 - fill;
+  if (rest <= 0) return 1.5;
+  if (rest <= 1.0 / 6) return 1.5 - std::cbrt(6 * rest);
+  double xi = (fill - 0.5) / 0.75;
+  for (int i = 0; i < 4; ++i)  // Newton; the slope stays ≥ ½ on this branch
+    xi -= (0.5 + 0.75 * xi - xi * xi * xi / 3 - fill) / (0.75 - xi * xi);
+  return xi;
+}
+
+/// Part of the kernel's volume that lies below the water surface. Water fills the pores of the soil that
+/// is there first and free room after, so that a surface at a soil's top, within it or above it is found.
+double fill_of(const CellSums& c, double volume) {
+  const double water = c.water / volume, bulk = c.soil_bulk / volume;
+  if (bulk <= 0) return water;
+  const double n = 1 - c.grains / c.soil_bulk;
+  return std::min(water / n, bulk) + std::max(0.0, water - n * bulk);
+}
+
+}  // namespace
+
+template <int D>
+void find_surface(State<D>& s) {
+  const double volume = s.grid.cell_volume();
+  s.blocks.all([&](int b) {
+    s.blocks.cells(s.grid, b, false, [&](int i, const Cell<D>&) {
+      const CellSums& sums = s.cell_sums[i];
+      CellState& c = s.cell[i];
+      c = {};
+      if (s.water_walls.blocked(i)) return;
+      c.n = std::max(1 - sums.grains / volume, kMinRoom);
+      c.fill = fill_of(sums, volume);
+      c.depth = depth_of_fill(c.fill);
+      c.unknown = c.depth > 0 ? 0 : -1;
+      if (c.unknown < 0) s.pressure[i] = 0;
+    });
+  });
+  // Drift is measured only where no air is in reach of the kernel.
+  s.blocks.all([&](int b) {
+    s.blocks.cells(s.grid, b, false, [&](int i, const Cell<D>&) {
+      CellState& c = s.cell[i];
+      if (c.unknown < 0) return;
+      const double excess = (s.cell_sums[i].water + s.cell_sums[i].grains) / volume - 1;
+      bool air = false;
+      for (int d = 0; d < D; ++d)
+        for (int side : {0, 1}) {
+          const int face = i + side * s.grid.stride[d], other = i + (2 * side - 1) * s.grid.stride[d];
+          if (!s.water_walls.closed(d, face) && s.cell[other].unknown < 0) air = true;
+        }
+      if (excess > 0 || !air) c.excess = excess;
+    });
+  });
+}
+
+template void find_surface<2>(State<2>&);
+template void find_surface<3>(State<3>&);
+
+}  // namespace quicksand

@@ -1,0 +1,128 @@
+// Points → faces and cells: masses, momenta, internal forces, drag, volumes.
+
+#include "engine/grid/stencil.hpp"
+#include "engine/step/phases.hpp"
+
+namespace quicksand {
+namespace {
+
+/// Row d of the symmetric effective stress.
+template <int D>
+Vec<D> stress_row(const Stress<D>& s, int d) {
+  if constexpr (D == 2)
+    return d == 0 ? Vec<2>{s[0], s[3]} : Vec<2>{s[3], s[1]};
+  else
+    return d == 0 ? Vec<3>{s[0], s[3], s[5]} : d == 1 ? Vec<3>{s[3], s[1], s[4]} : Vec<3>{s[5], s[4], s[2]};
+}
+
+template <int D>
+void soil_to_faces(State<D>& s, std::uint32_t p) {
+  const SoilPoints<D>& soil = s.soil;
+  const SoilMaterial& material = s.constants.soils[soil.soil[p]];
+  const PointKernel<D> kernel(s.grid, soil.x[p]);
+  const double mass = soil.mass[p], n = soil.porosity[p];
+  const double grains = mass / material.grain_density, bulk = grains / (1 - n);
+  const double drag = s.water.size() ? bulk * material.drag.resistance(n) : 0;
+  for (int d = 0; d < D; ++d) {
+    const Vec<D> stress = stress_row<D>(soil.stress[p], d);
+    const double momentum = mass * soil.v[p][d];
+    for_faces(s.grid, s.soil_walls, kernel, d, [&](int face, double w, double sign, const Vec<D>& g) {
+      FaceSums& f = s.sums[d][face];
+      double divergence = 0;
+      for (int j = 0; j < D; ++j) divergence += stress[j] * g[j];
+      f.soil_mass += w * mass;
+      f.grains += w * grains;
+      f.soil_momentum += sign * w * momentum;
+      f.soil_force -= sign * bulk * divergence;  // [FMS19] eq. (1), ∇·σ′ in its weak form
+      f.drag += w * drag;
+    });
+  }
+  // Room is measured with the water's own kernels, so that grains and water fold at the same walls.
+  for_centers(s.grid, s.water_walls, kernel, [&](int cell, double w) {
+    s.cell_sums[cell].grains += w * grains;
+    s.cell_sums[cell].soil_bulk += w * bulk;
+  });
+}
+
+template <int D>
+void water_to_faces(State<D>& s, std::uint32_t p) {
+  const PointKernel<D> kernel(s.grid, s.water.x[p]);
+  const double mass = s.water.mass[p], volume = mass / s.constants.water_density;
+  for (int d = 0; d < D; ++d) {
+    const double momentum = mass * s.water.v[p][d];
+    for_faces(s.grid, s.water_walls, kernel, d, [&](int face, double w, double sign, const Vec<D>&) {
+      FaceSums& f = s.sums[d][face];
+      f.water_mass += w * mass;
+      f.water_momentum += sign * w * momentum;
+    });
+  }
+  for_centers(s.grid, s.water_walls, kernel,
+              [&](int cell, double w) { s.cell_sums[cell].water += w * volume; });
+}
+
+/// Surface loads are few: serial, in the order of their markers.
+template <int D>
+void loads_to_faces(State<D>& s) {
+  for (const SurfaceLoad<D>& load : s.loads) {
+    if (!load.active) continue;
+    const double rise = load.ramp > 0 ? std::min(1.0, (s.time - load.start) / load.ramp) : 1.0;
+    for (const Vec<D>& x : load.marker) {
+      const PointKernel<D> kernel(s.grid, x);
+      for (int d = 0; d < D; ++d)
+        for_faces(s.grid, s.soil_walls, kernel, d, [&](int face, double w, double sign, const Vec<D>&) {
+          s.sums[d][face].soil_force += sign * w * rise * load.force[d];
+        });
+    }
+  }
+}
+
+}  // namespace
+
+template <int D>
+void points_to_faces(State<D>& s) {
+  s.blocks.group(s.grid, s.soil.x, s.soil_blocks);
+  s.blocks.group(s.grid, s.water.x, s.water_blocks);
+  const bool has_fixed = s.fixed.size() > 0;
+  s.blocks.all([&](int b) {
+    s.blocks.cells(s.grid, b, true, [&](int i, const Cell<D>&) {
+      for (int d = 0; d < D; ++d) s.sums[d][i] = {};
+      s.cell_sums[i] = has_fixed ? s.fixed_cell[i] : CellSums{};
+    });
+  });
+  s.blocks.by_color([&](int b) {
+    for (auto i = s.soil_blocks.begin[b]; i < s.soil_blocks.begin[b + 1]; ++i)
+      soil_to_faces(s, s.soil_blocks.order[i]);
+    for (auto i = s.water_blocks.begin[b]; i < s.water_blocks.begin[b + 1]; ++i)
+      water_to_faces(s, s.water_blocks.order[i]);
+  });
+  loads_to_faces(s);
+}
+
+template <int D>
+void measure_fixed(State<D>& s) {
+  for (auto& f : s.fixed_face) f.assign(s.grid.count(), {});
+  s.fixed_cell.assign(s.grid.count(), {});
+  const double volume = s.grid.cell_volume();
+  for (std::size_t p = 0; p < s.fixed.size(); ++p) {
+    const SoilMaterial& material = s.constants.soils[s.fixed.soil[p]];
+    const PointKernel<D> kernel(s.grid, s.fixed.x[p]);
+    const double n = s.fixed.porosity[p], grains = s.fixed.mass[p] / material.grain_density;
+    const double bulk = grains / (1 - n), drag = material.drag.resistance(n);
+    for (int d = 0; d < D; ++d)
+      for_faces(s.grid, s.soil_walls, kernel, d, [&](int face, double w, double, const Vec<D>&) {
+        s.fixed_face[d][face].phi += w * grains / volume;
+        s.fixed_face[d][face].drag += w * bulk * drag / volume;
+      });
+    for_centers(s.grid, s.water_walls, kernel, [&](int cell, double w) {
+      s.fixed_cell[cell].grains += w * grains;
+      s.fixed_cell[cell].soil_bulk += w * bulk;
+    });
+  }
+}
+
+template void points_to_faces<2>(State<2>&);
+template void points_to_faces<3>(State<3>&);
+template void measure_fixed<2>(State<2>&);
+template void measure_fixed<3>(State<3>&);
+
+}  // namespace quicksand

@@ -1,0 +1,194 @@
+// Faces → points: velocities, strains and stress, porosity, positions.
+
+#include <cmath>
+#include <limits>
+
+#include "engine/grid/stencil.hpp"
+#include "engine/step/phases.hpp"
+#include "engine/step/step.hpp"
+
+namespace quicksand {
+namespace {
+
+/// Distance from a wall at which a point that would enter it is put back, in cells.
+constexpr double kClearance = 1e-6;
+
+/// Totals of one block; summed over blocks in their order.
+template <int D>
+struct Totals {
+  Vec<D> momentum{};
+  double mass = 0, kinetic = 0, strain = 0, max_speed2 = 0, max_soil_speed2 = 0;
+  double soil_limit = std::numeric_limits<double>::infinity();  ///< s
+  Interventions interventions;
+  bool finite = true;
+  Totals& operator+=(const Totals& o) {
+    for (int d = 0; d < D; ++d) momentum[d] += o.momentum[d];
+    mass += o.mass;
+    kinetic += o.kinetic;
+    strain += o.strain;
+    max_speed2 = std::max(max_speed2, o.max_speed2);
+    max_soil_speed2 = std::max(max_soil_speed2, o.max_soil_speed2);
+    soil_limit = std::min(soil_limit, o.soil_limit);
+    interventions += o.interventions;
+    finite = finite && o.finite;
+    return *this;
+  }
+};
+
+/// Moves x by u; a closed face on the way stops the component across it. Returns whether it did.
+template <int D>
+bool move(const Grid<D>& grid, const Walls<D>& walls, int home, Vec<D>& x, const Vec<D>& u) {
+  if (!walls.folds(home)) {
+    for (int d = 0; d < D; ++d) x[d] += u[d];
+    return false;
+  }
+  bool stopped = false;
+  for (int d = 0; d < D; ++d) {
+    const Cell<D> c = grid.cell_of(x);
+    const double low = grid.origin[d] + c[d] * grid.h, high = low + grid.h;
+    const int face = grid.index(c);
+    x[d] += u[d];
+    if (x[d] <= low && walls.closed(d, face)) {
+      stopped = stopped || x[d] < low;
+      x[d] = low + kClearance * grid.h;
+    } else if (x[d] >= high && walls.closed(d, face + grid.stride[d])) {
+      stopped = stopped || x[d] > high;
+      x[d] = high - kClearance * grid.h;
+    }
+  }
+  return stopped;
+}
+
+/// FLIP with a little PIC: the point keeps its own velocity plus the grid's change, and relaxes to the
+/// grid's velocity at `pic_rate`, a rate so that the damping does not depend on the time step.
+template <int D>
+double mix(double own, double old_grid, double new_grid, double pic) {
+  return (1 - pic) * (own + new_grid - old_grid) + pic * new_grid;
+}
+
+template <int D>
+void water_from_faces(State<D>& s, std::uint32_t p, double dt, double pic, Totals<D>& totals) {
+  WaterPoints<D>& water = s.water;
+  const PointKernel<D> kernel(s.grid, water.x[p]);
+  Vec<D> step{};
+  double speed2 = 0;
+  for (int d = 0; d < D; ++d) {
+    double v_old = 0, v_new = 0;
+    for_faces(s.grid, s.water_walls, kernel, d, [&](int face, double w, double sign, const Vec<D>&) {
+      const FaceFlow& f = s.flow[d][face];
+      v_old += sign * w * f.water_old;
+      v_new += sign * w * f.water;
+    });
+    double& v = water.v[p][d];
+    v = mix<D>(v, v_old, v_new, pic);
+    step[d] = dt * v_new;
+    totals.momentum[d] += water.mass[p] * v;
+    speed2 += v * v;
+  }
+  totals.interventions.clipped_points += move<D>(s.grid, s.water_walls, kernel.home, water.x[p], step);
+  totals.mass += water.mass[p];
+  totals.kinetic += 0.5 * water.mass[p] * speed2;
+  totals.max_speed2 = std::max(totals.max_speed2, speed2);
+  totals.finite = totals.finite && std::isfinite(speed2);
+}
+
+template <int D>
+void soil_from_faces(State<D>& s, std::uint32_t p, double dt, double pic, Totals<D>& totals) {
+  SoilPoints<D>& soil = s.soil;
+  const SoilMaterial& material = s.constants.soils[soil.soil[p]];
+  const PointKernel<D> kernel(s.grid, soil.x[p]);
+  Vec<D> step{};
+  Gradient<D> l{};
+  double speed2 = 0;
+  for (int d = 0; d < D; ++d) {
+    double v_old = 0, v_new = 0;
+    for_faces(s.grid, s.soil_walls, kernel, d, [&](int face, double w, double sign, const Vec<D>& g) {
+      const FaceFlow& f = s.flow[d][face];
+      v_old += sign * w * f.soil_old;
+      v_new += sign * w * f.soil;
+      for (int j = 0; j < D; ++j) l[d][j] += sign * f.soil * g[j];
+    });
+    double& v = soil.v[p][d];
+    v = mix<D>(v, v_old, v_new, pic);
+    step[d] = dt * v_new;
+    totals.momentum[d] += soil.mass[p] * v;
+    speed2 += v * v;
+  }
+  totals.interventions.clipped_points += move<D>(s.grid, s.soil_walls, kernel.home, soil.x[p], step);
+
+  // Dˢn/Dt = (1−n) ∇·vˢ, integrated: the grains' volume stays.
+  double divergence = 0;
+  for (int d = 0; d < D; ++d) divergence += l[d][d];
+  double& n = soil.porosity[p];
+  const double exact = 1 - (1 - n) / std::max(1 + dt * divergence, 0.1);
+  n = std::clamp(exact, kMinRoom, kMaxPorosity);
+  totals.interventions.clamped_values += n != exact;
+
+  if (n > material.max_porosity) {
+    soil.stress[p] = {};  // the grains do not touch
+  } else {
+    const StressUpdate<D> u = update_stress<D>(material, soil.stress[p], l, dt);
+    soil.stress[p] = u.stress;
+    soil.plastic_strain[p] += u.plastic_strain;
+  }
+  const StepLimit& limit = s.constants.step_limits[soil.soil[p]];
+  const bool wet = s.cell[kernel.home].unknown >= 0;
+  totals.soil_limit = std::min(totals.soil_limit, wet ? limit.saturated(n) : limit.dry(n));
+  const Stress<D>& sigma = soil.stress[p];
+  const double volume = soil.mass[p] / (material.grain_density * (1 - n));
+  const double trace = sigma[0] + sigma[1] + sigma[2];
+  double square = sigma[0] * sigma[0] + sigma[1] * sigma[1] + sigma[2] * sigma[2];
+  for (int i = 3; i < kStress<D>; ++i) square += 2 * sigma[i] * sigma[i];
+  const Elastic& e = material.elastic;
+  totals.strain += volume * (0.25 * (square - trace * trace / 3) / e.shear + trace * trace / (18 * e.bulk));
+  totals.mass += soil.mass[p];
+  totals.kinetic += 0.5 * soil.mass[p] * speed2;
+  totals.max_speed2 = std::max(totals.max_speed2, speed2);
+  totals.max_soil_speed2 = std::max(totals.max_soil_speed2, speed2);
+  totals.finite = totals.finite && std::isfinite(speed2) && std::isfinite(square);
+}
+
+/// Markers of a surface load ride on the grains.
+template <int D>
+void move_loads(State<D>& s, double dt) {
+  for (SurfaceLoad<D>& load : s.loads)
+    for (Vec<D>& x : load.marker) {
+      const PointKernel<D> kernel(s.grid, x);
+      Vec<D> step{};
+      for (int d = 0; d < D; ++d)
+        for_faces(s.grid, s.soil_walls, kernel, d, [&](int face, double w, double sign, const Vec<D>&) {
+          step[d] += dt * sign * w * s.flow[d][face].soil;
+        });
+      move<D>(s.grid, s.soil_walls, kernel.home, x, step);
+    }
+}
+
+}  // namespace
+
+template <int D>
+void faces_to_points(State<D>& s, double dt, StepReport<D>& report) {
+  const double pic = 1 - std::exp(-s.constants.pic_rate * dt);
+  const Totals<D> totals = s.blocks.template sum<Totals<D>>([&](int b) {
+    Totals<D> t;
+    for (auto i = s.soil_blocks.begin[b]; i < s.soil_blocks.begin[b + 1]; ++i)
+      soil_from_faces(s, s.soil_blocks.order[i], dt, pic, t);
+    for (auto i = s.water_blocks.begin[b]; i < s.water_blocks.begin[b + 1]; ++i)
+      water_from_faces(s, s.water_blocks.order[i], dt, pic, t);
+    return t;
+  });
+  move_loads(s, dt);
+  report.momentum = totals.momentum;
+  report.moving_mass = totals.mass;
+  report.kinetic = totals.kinetic;
+  report.strain = totals.strain;
+  report.max_speed = std::sqrt(totals.max_speed2);
+  report.max_soil_speed = std::sqrt(totals.max_soil_speed2);
+  report.soil_limit = totals.soil_limit;
+  report.finite = totals.finite;
+  s.interventions += totals.interventions;
+}
+
+template void faces_to_points<2>(State<2>&, double, StepReport<2>&);
+template void faces_to_points<3>(State<3>&, double, StepReport<3>&);
+
+}  // namespace quicksand

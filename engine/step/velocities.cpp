@@ -1,0 +1,191 @@
+// Velocities on the faces: momentum balance of both phases with the drag inside, contact of grains with
+// walls, correction by the pressure gradient, and extrapolation into the air next to the surface.
+
+#include <atomic>
+
+#include "engine/step/phases.hpp"
+
+namespace quicksand {
+
+template <int D>
+double pressure_gradient(const State<D>& s, int d, int face) {
+  const int low = face - s.grid.stride[d], high = face;
+  const CellState &a = s.cell[low], &b = s.cell[high];
+  if (s.water_walls.closed(d, face))
+    return a.unknown >= 0 || b.unknown >= 0 ? s.constants.water_density * s.constants.gravity[d] : 0;
+  const double inverse_h = s.grid.inverse_h;
+  if (a.unknown >= 0 && b.unknown >= 0) return (s.pressure[high] - s.pressure[low]) * inverse_h;
+  if (a.unknown >= 0) return -s.pressure[low] * inverse_h / surface_distance(a.depth, b.depth);
+  if (b.unknown >= 0) return s.pressure[high] * inverse_h / surface_distance(b.depth, a.depth);
+  return 0;
+}
+
+namespace {
+
+/// Momentum balance of one face, per unit volume, before the pressure gradient.
+struct Balance {
+  double soil_mass = 0, soil_momentum = 0;    ///< kg/m³; incl. dt × forces
+  double water_mass = 0, water_momentum = 0;
+  double drag = 0, fixed_drag = 0;            ///< dt × R, kg/m³
+};
+
+/// Implicit drag: [FMS19] eqs. (1) and (2) as one 2×2 system, solved for v̂ and for the response to G.
+void solve_pair(const Balance& b, double dt, FaceFlow& f) {
+  const double a11 = b.soil_mass + b.drag, a22 = b.water_mass + b.drag + b.fixed_drag, a12 = -b.drag;
+  const double det = a11 * a22 - a12 * a12;
+  f.soil = (a22 * b.soil_momentum - a12 * b.water_momentum) / det;
+  f.water = (a11 * b.water_momentum - a12 * b.soil_momentum) / det;
+  f.soil_response = dt * (a22 * f.phi - a12 * f.n) / det;
+  f.water_response = dt * (a11 * f.n - a12 * f.phi) / det;
+}
+
+void solve_water(const Balance& b, double dt, FaceFlow& f) {
+  const double a = b.water_mass + b.drag + b.fixed_drag;  // moving grains that are held count as fixed
+  f.soil = f.soil_response = 0;
+  f.water = b.water_momentum / a;
+  f.water_response = dt * f.n / a;
+}
+
+void solve_soil(const Balance& b, double dt, FaceFlow& f) {
+  f.soil = b.soil_momentum / b.soil_mass;
+  f.soil_response = dt * f.phi / b.soil_mass;
+  f.water = f.water_response = 0;
+}
+
+/// +1 or −1: the direction in which grains may leave a closed face; 0: neither (walls of no thickness,
+/// which may have grains on both sides).
+template <int D>
+int leaving_direction(const State<D>& s, int d, int face) {
+  const bool low = s.soil_walls.blocked(face - s.grid.stride[d]), high = s.soil_walls.blocked(face);
+  return low == high ? 0 : low ? 1 : -1;
+}
+
+template <int D>
+void predict_face(State<D>& s, int d, int face, double dt) {
+  const FaceSums& sums = s.sums[d][face];
+  FaceFlow& f = s.flow[d][face];
+  f = {};
+  const double volume = s.grid.cell_volume(), g = s.constants.gravity[d], rho = s.constants.water_density;
+  const bool soil = sums.soil_mass > kMassCutoff * rho * volume;
+  const bool water_open = !s.water_walls.closed(d, face);
+  const bool water = water_open && sums.water_mass > kMassCutoff * rho * volume;
+  f.wet = water_open && (s.cell[face].unknown >= 0 || s.cell[face - s.grid.stride[d]].unknown >= 0);
+  if (!soil && !water && !f.wet) return;
+
+  Balance b;
+  f.phi = sums.grains / volume;
+  double fixed_phi = 0;
+  if (s.fixed.size()) {
+    fixed_phi = s.fixed_face[d][face].phi;
+    b.fixed_drag = dt * s.fixed_face[d][face].drag;
+  }
+  f.n = std::max(1 - f.phi - fixed_phi, kMinRoom);
+  if (soil) {
+    f.soil_old = sums.soil_momentum / sums.soil_mass;
+    b.soil_mass = sums.soil_mass / volume;
+    b.soil_momentum = b.soil_mass * (f.soil_old + dt * g) + dt * sums.soil_force / volume;
+  }
+  if (water || f.wet) {
+    // Inertia of a wet face is that of a full one, n ρw, not of the few drops whose kernels reach it; where
+    // there is no pressure, drops carry and are dragged by what is there.
+    const double full = f.n * rho;
+    const double there = f.wet ? 1 : std::min(1.0, sums.water_mass / (volume * full));
+    f.water_old = water ? sums.water_momentum / sums.water_mass : 0;
+    b.water_mass = there * full;
+    const double viscous = water && s.constants.viscosity > 0 ? viscous_acceleration(s, d, face) : 0;
+    b.water_momentum = b.water_mass * (f.water_old + dt * (g + viscous));
+    b.drag = dt * there * sums.drag / volume;
+    b.fixed_drag *= there;
+  }
+
+  bool held = false;
+  if (soil && s.soil_walls.closed(d, face)) {
+    // Contact, one-sided: grains stay on the wall while what acts on them, with the last pressure
+    // gradient, presses them to it.
+    FaceFlow trial = f;
+    if (b.water_mass > 0)
+      solve_pair(b, dt, trial);
+    else
+      solve_soil(b, dt, trial);
+    const double leaving = trial.soil - trial.soil_response * pressure_gradient(s, d, face);
+    held = !(leaving * leaving_direction(s, d, face) > 0);
+    s.soil_walls.set_separated(d, face, !held);
+  }
+  f.soil_held = held;
+  const bool moving_soil = soil && !held;
+  if (b.water_mass > 0 && moving_soil)
+    solve_pair(b, dt, f);
+  else if (b.water_mass > 0)
+    solve_water(b, dt, f);
+  else if (moving_soil)
+    solve_soil(b, dt, f);
+  if (!water_open) f.water = f.water_response = 0;
+}
+
+/// Mean of the neighbours that know better, or false.
+template <int D>
+bool extrapolate(const State<D>& s, int d, int face, std::uint8_t level, double& value) {
+  double sum = 0;
+  int count = 0;
+  for (int a = 0; a < D; ++a)
+    for (int other : {face - s.grid.stride[a], face + s.grid.stride[a]}) {
+      const FaceFlow& o = s.flow[d][other];
+      // Faces of this level may be written meanwhile; their flag is then ≥ level or still 0.
+      const std::uint8_t wet = std::atomic_ref(const_cast<std::uint8_t&>(o.wet)).load(std::memory_order_relaxed);
+      if (wet == 0 || wet >= level || s.water_walls.closed(d, other)) continue;
+      sum += o.water;
+      ++count;
+    }
+  if (count) value = sum / count;
+  return count > 0;
+}
+
+}  // namespace
+
+template <int D>
+void predict_velocities(State<D>& s, double dt) {
+  s.blocks.all([&](int b) {
+    s.blocks.cells(s.grid, b, true, [&](int face, const Cell<D>&) {
+      for (int d = 0; d < D; ++d) predict_face(s, d, face, dt);
+    });
+  });
+}
+
+template <int D>
+void correct_velocities(State<D>& s) {
+  s.blocks.all([&](int b) {
+    s.blocks.cells(s.grid, b, true, [&](int face, const Cell<D>&) {
+      for (int d = 0; d < D; ++d) {
+        FaceFlow& f = s.flow[d][face];
+        const double g = f.wet || f.soil_response > 0 ? pressure_gradient(s, d, face) : 0;
+        if (f.wet) f.water -= f.water_response * g;
+        f.soil -= f.soil_response * (f.wet ? g : 0);
+        if (s.soil_walls.closed(d, face) && f.soil * leaving_direction(s, d, face) <= 0) f.soil = 0;
+      }
+    });
+  });
+  // A kernel reaches 1½ cells: two rings of faces beyond the last wet one.
+  for (const std::uint8_t level : {std::uint8_t{2}, std::uint8_t{3}})
+    s.blocks.all([&](int b) {
+      s.blocks.cells(s.grid, b, true, [&](int face, const Cell<D>&) {
+        for (int d = 0; d < D; ++d) {
+          FaceFlow& f = s.flow[d][face];
+          if (f.wet || s.sums[d][face].water_mass <= 0 || s.water_walls.closed(d, face)) continue;
+          double v;
+          if (extrapolate(s, d, face, level, v)) {
+            f.water = v;
+            std::atomic_ref(f.wet).store(level, std::memory_order_relaxed);
+          }
+        }
+      });
+    });
+}
+
+template double pressure_gradient<2>(const State<2>&, int, int);
+template double pressure_gradient<3>(const State<3>&, int, int);
+template void predict_velocities<2>(State<2>&, double);
+template void predict_velocities<3>(State<3>&, double);
+template void correct_velocities<2>(State<2>&);
+template void correct_velocities<3>(State<3>&);
+
+}  // namespace quicksand

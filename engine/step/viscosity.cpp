@@ -1,0 +1,45 @@
+// Viscous stress of the water, explicitly, on the faces: ∇·(nτ)/(nρw) ≈ µ/ρw ∇²vw  [FMS19] eq. (2).
+
+#include "engine/step/phases.hpp"
+
+namespace quicksand {
+namespace {
+
+template <int D>
+double old_velocity(const State<D>& s, int d, int face) {
+  const FaceSums& f = s.sums[d][face];
+  return f.water_momentum / f.water_mass;
+}
+
+/// Difference of velocity to the neighbour of `face` along `axis`, m/s. A free surface and a slip wall pass
+/// no shear; at a no-slip wall the velocity is mirrored with its sign changed.
+template <int D>
+double difference(const State<D>& s, int d, int face, int axis, int side) {
+  const int offset = (2 * side - 1) * s.grid.stride[axis], other = face + offset;
+  const double v = old_velocity(s, d, face);
+  if (axis == d) {
+    if (s.water_walls.closed(d, other)) return -v;
+  } else {
+    for (int cell : {face, face - s.grid.stride[d]}) {
+      const int wall = cell + side * s.grid.stride[axis];
+      if (s.water_walls.closed(axis, wall)) return s.water_walls.no_slip(axis, wall) ? -2 * v : 0;
+    }
+  }
+  if (s.sums[d][other].water_mass <= kMassCutoff * s.constants.water_density * s.grid.cell_volume()) return 0;
+  return old_velocity(s, d, other) - v;
+}
+
+}  // namespace
+
+template <int D>
+double viscous_acceleration(const State<D>& s, int d, int face) {
+  double sum = 0;
+  for (int axis = 0; axis < D; ++axis)
+    for (int side : {0, 1}) sum += difference(s, d, face, axis, side);
+  return s.constants.viscosity / s.constants.water_density * sum * s.grid.inverse_h * s.grid.inverse_h;
+}
+
+template double viscous_acceleration<2>(const State<2>&, int, int);
+template double viscous_acceleration<3>(const State<3>&, int, int);
+
+}  // namespace quicksand
