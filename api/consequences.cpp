@@ -33,6 +33,11 @@ struct Doubt {
   bool below = false;  ///< also for refused places below it
 };
 constexpr Doubt doubts[] = {
+    {"/domain/cell_size", "/domain", true},
+    {"/domain/cell_size", "/numerics", true},
+    {"/materials/soils/*/max_porosity", "/materials/soils/*/porosity"},
+    {"/materials/soils/*/model", "/materials/soils/*/model/friction_angle"},
+    {"/stages/*/until_rest", "/stages/*/duration"},
     {"/materials", "/bodies", true},  // is it used, is there water
     {"/initial", "/bodies", true},
     {"/numerics", "/bodies", true},

@@ -1,6 +1,7 @@
 #include "api/explain.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <numeric>
 #include <regex>
 
@@ -119,7 +120,22 @@ void explain_unknown(const json& properties, const std::string& key, const std::
     detail += ": did you mean \"" + meant + "\"?";
     out.refused.insert(pointer + "/" + meant);
   }
-  refuse(out, pointer + "/" + pointer_step(key), detail + " Known here: " + keys_of(properties));
+  refuse(out, pointer + "/" + pointer_step(key), detail + (meant.empty() ? ". " : " ") + "Known here: " + keys_of(properties));
+}
+
+/// Names of members that are chosen freely, such as those of soils. The validator reports a wrong one at the
+/// object that holds the named ones' container, so this looks into member `key` of what `parent` governs.
+void explain_names(const json& root, const json& parent, const std::string& key, const json& member,
+                   const std::string& pointer, Explanation& out) {
+  const json* reference = descend(root, parent, key);
+  if (!reference || !member.is_object()) return;
+  const json& schema = resolved(root, *reference);
+  if (!schema.contains("propertyNames")) return;
+  const json& names = resolved(root, schema["propertyNames"]);
+  for (const auto& item : member.items())
+    if (!scalar_fits(root, names, item.key()))
+      refuse(out, pointer + "/" + pointer_step(item.key()),
+             "the name " + shown(item.key()) + " is not allowed: give " + allowed(root, names));
 }
 
 void explain_members(const json& root, const json& schema, const json& value, const std::string& pointer,
@@ -131,10 +147,7 @@ void explain_members(const json& root, const json& schema, const json& value, co
   for (const auto& item : value.items()) {
     if (properties.contains(item.key())) ++known;
     else if (closed) explain_unknown(properties, item.key(), pointer, out);
-    if (!schema.contains("propertyNames")) continue;
-    const json& names = resolved(root, schema["propertyNames"]);
-    if (!scalar_fits(root, names, item.key()))
-      refuse(out, pointer + "/" + pointer_step(item.key()), "the name " + shown(item.key()) + " is not allowed: give " + allowed(root, names));
+    explain_names(root, schema, item.key(), item.value(), pointer + "/" + pointer_step(item.key()), out);
   }
   if (schema.contains("required"))
     for (const json& key : schema["required"])
@@ -144,6 +157,13 @@ void explain_members(const json& root, const json& schema, const json& value, co
   if (counted > schema.value("maxProperties", counted) || (value.empty() && schema.contains("minProperties")))
     refuse(out, pointer, closed ? "give exactly one of " + keys_of(properties) + ", not " + std::to_string(counted)
                                 : "holds " + std::to_string(counted) + " entries: at most " + schema["maxProperties"].dump());
+}
+
+/// Shortest text of a number; the usual one would write 1e7 as 10000000.0.
+std::string number_text(const json& number) {
+  if (!number.is_number_float()) return number.dump();
+  char buffer[32];
+  return std::string(buffer, std::to_chars(buffer, buffer + sizeof buffer, number.get<double>()).ptr);
 }
 
 std::string between(const json& schema, const char* low, const char* high) {
@@ -157,7 +177,7 @@ std::string between(const json& schema, const char* low, const char* high) {
 std::string range(const json& schema) {
   std::string text;
   const auto add = [&](const char* key, const char* words) {
-    if (schema.contains(key)) text += (text.empty() ? " " : " and ") + std::string(words) + " " + schema[key].dump();
+    if (schema.contains(key)) text += (text.empty() ? " " : " and ") + std::string(words) + " " + number_text(schema[key]);
   };
   add("exclusiveMinimum", "above");
   add("minimum", "at least");

@@ -40,9 +40,13 @@ bool in_domain(const Scene& scene, const Vec3& point) {
   return true;
 }
 
+std::string outside_words(const Scene& scene, const Vec3& point) {
+  return text(point) + " is outside the domain " + text(scene.domain.min) + " to " + text(scene.domain.max);
+}
+
 bool check_corner(const Scene& scene, const Vec3& point, const std::string& pointer, Faults& faults) {
   if (!in_domain(scene, point))
-    faults.push_back({pointer, text(point) + " is outside the domain " + text(scene.domain.min) + " to " + text(scene.domain.max)});
+    faults.push_back({pointer, outside_words(scene, point)});
   else if (!on_corner(scene, point))
     faults.push_back({pointer, text(point) + " is not on a corner of " + cell_words(scene) + ": the nearest is " +
                                    text(nearest_corner(scene, point))});
@@ -173,6 +177,9 @@ void check_lines(const Scene& scene, Faults& faults) {
   }
   for (std::size_t k = 0; k < scene.output.sections.size(); ++k)
     check_line(scene, scene.output.sections[k].line, at_index("output/sections", k, "/line"), faults);
+  for (std::size_t k = 0; k < scene.output.probes.size(); ++k)
+    if (const Vec3& at = scene.output.probes[k].at; !in_domain(scene, at))
+      faults.push_back({at_index("output/probes", k, "/at"), outside_words(scene, at)});
 }
 
 }  // namespace quicksand

@@ -18,11 +18,11 @@ void check_names(const Scene& scene, Faults& faults);
 void check_materials(const Scene& scene, Faults& faults);
 /// Loads and stages: times, names they refer to, gates and loads without effect.
 void check_stages(const Scene& scene, Faults& faults);
-/// Probes, intervals, fields and watches.
+/// Intervals, fields, quantities of probes, and watches.
 void check_output(const Scene& scene, Faults& faults);
 /// The grid. False: it cannot be laid out, and nothing can be compared with it.
 bool check_grid(const Scene& scene, Faults& faults);
-/// Walls, gates, reservoirs and sections against the grid and each other. Plane scenes with a sound grid.
+/// Walls, gates, reservoirs, sections and probes against the grid and each other. Plane scenes with a sound grid.
 void check_lines(const Scene& scene, Faults& faults);
 /// Regions of bodies against the domain, the blocks and each other. Plane scenes with a sound grid.
 void check_bodies(const Scene& scene, Faults& faults);

@@ -93,16 +93,8 @@ std::string missing_for(const Scene& scene, const std::string& quantity) {
 }
 
 void check_probes(const Scene& scene, Faults& faults) {
-  const Domain& domain = scene.domain;
-  const std::size_t axes = domain.dimension == Dimension::space ? 3 : 2;
   for (std::size_t k = 0; k < scene.output.probes.size(); ++k) {
     const Probe& probe = scene.output.probes[k];
-    bool inside = true;
-    for (std::size_t axis = 0; axis < axes; ++axis)
-      inside = inside && probe.at[axis] >= domain.min[axis] && probe.at[axis] <= domain.max[axis];
-    if (!inside && domain.cell_size > 0)
-      faults.push_back({at_index("output/probes", k, "/at"), text(probe.at) + " is outside the domain " +
-                                                                 text(domain.min) + " to " + text(domain.max)});
     if (const std::string why = missing_for(scene, probe.quantity); !why.empty())
       faults.push_back({at_index("output/probes", k, "/quantity"), probe.quantity + " has nothing to show: " + why});
   }

@@ -31,6 +31,7 @@ TEST_P(CaseFaults, GiveTheirPointers) {
 }
 
 #define ADD(path, value) R"([{"op":"add","path":")" path R"(","value":)" value "}]"
+#define SET(path, value) R"([{"op":"replace","path":")" path R"(","value":)" value "}]"
 #define REMOVE(path) R"([{"op":"remove","path":")" path R"("}])"
 
 const Mutation of_the_format[] = {
@@ -58,7 +59,7 @@ const Mutation of_the_format[] = {
     {"EmptyRegion", ADD("/bodies/4/region", "{}"), {"/bodies/4/region"}},
     {"TwoRegions", ADD("/bodies/4/region/polygon", "[[0,0],[1,0],[0,1]]"), {"/bodies/4/region"}},
     {"TwoCorners", ADD("/bodies/3/region/polygon", "[[0,0],[1,0]]"), {"/bodies/3/region/polygon"}},
-    {"BadCorner", ADD("/bodies/3/region/polygon/1/0", R"("x")"), {"/bodies/3/region/polygon/1/0"}},
+    {"BadCorner", SET("/bodies/3/region/polygon/1/0", R"("x")"), {"/bodies/3/region/polygon/1/0"}},
     {"DifferenceOfOne", REMOVE("/bodies/1/region/difference/1"), {"/bodies/1/region/difference"}},
     {"RadiusMissing", ADD("/bodies/4/region", R"({"disc":{"center":[0.4,0.3]}})"), {"/bodies/4/region/disc/radius"}},
     {"SlashInName", ADD("/gates/0/name", R"("a/b")"), {"/gates/0/name"}},
@@ -66,7 +67,7 @@ const Mutation of_the_format[] = {
      {"/materials/soils/a~1b"}},
     {"ThreeNumbersInThePlane", ADD("/gravity", "[0,-9.81,0]"), {"/gravity"}},
     {"OneNumber", ADD("/domain/max", "[0.6]"), {"/domain/max"}},
-    {"UnknownField", ADD("/output/fields/0", R"("presure")"), {"/output/fields/0"}},
+    {"UnknownField", SET("/output/fields/0", R"("presure")"), {"/output/fields/0"}},
     {"NoSuchQuantity", ADD("/output/probes/0/quantity", R"("colour")"), {"/output/probes/0/quantity"}},
 };
 
@@ -105,33 +106,33 @@ const Mutation of_names[] = {
     {"HeaveOfWater", ADD("/output/heave/body", R"("pond")"), {"/output/heave/body"}},
     {"HeaveProbeUnknown", ADD("/output/heave/above", R"("roof")"), {"/output/heave/above"}},
     {"HeaveProbeOfOtherQuantity", ADD("/output/probes/0/quantity", R"("porosity")"), {"/output/heave/below"}},
-    {"HeaveProbesLevel", ADD("/output/probes/0/at/1", "0.24"), {"/output/heave/below"}},
+    {"HeaveProbesLevel", SET("/output/probes/0/at/1", "0.24"), {"/output/heave/below"}},
 };
 
 const Mutation of_geometry[] = {
     {"DomainTurned", ADD("/domain/min", "[0.7,0]"), {"/domain/max"}},
-    {"DomainNotWholeCells", ADD("/domain/max/0", "0.61"), {"/domain/max"}},
+    {"DomainNotWholeCells", SET("/domain/max/0", "0.61"), {"/domain/max"}},
     {"TooManyCells", ADD("/domain/cell_size", "1e-5"), {"/domain/cell_size"}},
     {"WallOffFaces", ADD("/walls/1/line/from", "[0.43,0.4]"), {"/walls/1/line", "/walls/1/line/from"}},
-    {"WallOffFacesOfDraft", R"([{"op":"add","path":"/walls/1/line/from/0","value":0.45},{"op":"add","path":"/walls/1/line/to/0","value":0.45}])",
+    {"WallOffFacesOfDraft", R"([{"op":"replace","path":"/walls/1/line/from/0","value":0.45},{"op":"replace","path":"/walls/1/line/to/0","value":0.45}])",
      {"/walls/1/line/from", "/walls/1/line/to"}},
-    {"WallOutside", ADD("/walls/1/line/to/1", "0.8"), {"/walls/1/line/to"}},
-    {"WallSlanted", ADD("/walls/1/line/to/0", "0.48"), {"/walls/1/line"}},
+    {"WallOutside", SET("/walls/1/line/to/1", "0.8"), {"/walls/1/line/to"}},
+    {"WallSlanted", SET("/walls/1/line/to/0", "0.48"), {"/walls/1/line"}},
     {"WallOfNoLength", ADD("/walls/1/line/to", "[0.44,0.4]"), {"/walls/1/line"}},
     {"WallOnEdge", ADD("/walls/1/line", R"({"from":[0.6,0.4],"to":[0.6,0.5]})"), {"/walls/1/line"}},
     {"WallOfNothing", REMOVE("/walls/1/line"), {"/walls/1"}},
-    {"BlockNotBox", ADD("/walls/1", R"({"name":"pile","block":{"disc":{"center":[0.4,0.5],"radius":0.04}}})"), {"/walls/1/block"}},
-    {"BlockOffFaces", ADD("/walls/0/block/box/max/0", "0.295"), {"/walls/0/block/box/max"}},
+    {"BlockNotBox", SET("/walls/1", R"({"name":"pile","block":{"disc":{"center":[0.4,0.5],"radius":0.04}}})"), {"/walls/1/block"}},
+    {"BlockOffFaces", SET("/walls/0/block/box/max/0", "0.295"), {"/walls/0/block/box/max"}},
     {"GateOnWall", ADD("/walls/-", R"({"name":"plug","line":{"from":[0.24,0.04],"to":[0.24,0.08]}})"), {"/gates/0/line"}},
     {"GateInBlock", ADD("/gates/0/line", R"({"from":[0.24,0.2],"to":[0.24,0.3]})"), {"/gates/0/line"}},
-    {"BodyOutside", ADD("/bodies/4/region/box/max/0", "0.7"), {"/bodies/4/region"}},
-    {"BodyTurned", ADD("/bodies/4/region/box/max/1", "0.2"), {"/bodies/4/region/box"}},
+    {"BodyOutside", SET("/bodies/4/region/box/max/0", "0.7"), {"/bodies/4/region"}},
+    {"BodyTurned", SET("/bodies/4/region/box/max/1", "0.2"), {"/bodies/4/region/box"}},
     {"BodyTooThin", ADD("/bodies/4/region/box", R"({"min":[0.4,0.4],"max":[0.5,0.404]})"), {"/bodies/4/region"}},
-    {"BodiesOverlap", ADD("/bodies/4/region/box/min/1", "0.23"), {"/bodies/4/region"}},
+    {"BodiesOverlap", SET("/bodies/4/region/box/min/1", "0.23"), {"/bodies/4/region"}},
     {"BodyInBlock", ADD("/bodies/4/region/box", R"({"min":[0.22,0.4],"max":[0.28,0.5]})"), {"/bodies/4/region"}},
-    {"BodyIntoBlock", ADD("/bodies/4/region/box/min/0", "0.28"), {"/bodies/4/region"}},
+    {"BodyIntoBlock", SET("/bodies/4/region/box/min/0", "0.28"), {"/bodies/4/region"}},
     {"PolygonCrossed", ADD("/bodies/3/region/polygon", "[[0.3,0.12],[0.6,0.24],[0.6,0.12],[0.3,0.24]]"), {"/bodies/3/region/polygon"}},
-    {"FixedBodyOffFaces", ADD("/bodies/2/region/box/max/1", "0.115"), {"/bodies/2/region"}},
+    {"FixedBodyOffFaces", SET("/bodies/2/region/box/max/1", "0.115"), {"/bodies/2/region"}},
     {"ProbeOutside", ADD("/output/probes/0/at", "[0.45,-0.1]"), {"/output/probes/0/at"}},
 };
 
@@ -160,7 +161,7 @@ const Mutation not_supported_yet[] = {
     {"RemoveBodies", ADD("/stages/1/remove_bodies", R"(["pond"])"), {"/stages/1/remove_bodies"}},
     {"Reservoir", ADD("/reservoirs", R"([{"name":"lake","line":{"from":[0,0],"to":[0,0.2]},"head":0.5}])"), {"/reservoirs"}},
     {"Section", ADD("/output/sections", R"([{"name":"cut","line":{"from":[0.3,0.12],"to":[0.6,0.12]},"quantity":"flow"}])"), {"/output/sections"}},
-    {"Plate", ADD("/loads/0", R"({"name":"cover","kind":"plate","body":"sand","plate":{"from":[0.3,0.24],"to":[0.6,0.24]},"plate_velocity":[0,-1]})"),
+    {"Plate", SET("/loads/0", R"({"name":"cover","kind":"plate","body":"sand","plate":{"from":[0.3,0.24],"to":[0.6,0.24]},"plate_velocity":[0,-1]})"),
      {"/loads/0/kind"}},
 };
 
@@ -178,8 +179,8 @@ TEST(CaseFaultsTogether, FaultsOfAllKindsComeInOneAnswer) {
     {"op":"add","path":"/materials/soils/sand/porosity","value":1.4},
     {"op":"add","path":"/domain/sides/bottom/head","value":1},
     {"op":"add","path":"/stages/1/open_gates/-","value":"door"},
-    {"op":"add","path":"/walls/1/line/to/0","value":0.45},
-    {"op":"add","path":"/bodies/4/region/box/min/1","value":0.23},
+    {"op":"replace","path":"/walls/1/line/to/0","value":0.45},
+    {"op":"replace","path":"/bodies/4/region/box/min/1","value":0.23},
     {"op":"add","path":"/numerics/kernel","value":"linear"}])");
   text.insert(text.size() - 1, R"(,"name":"again")");  // a duplicate key
   const ParsedCase parsed = parse_case(text);

@@ -56,8 +56,9 @@ TEST(JsonText, WholeNumbersCountAsIntegersHoweverWritten) {
 }
 
 TEST(JsonText, LongStringsAreRefused) {
-  EXPECT_TRUE(read_json("\"" + std::string(max_string, 'a') + "\"").complete);
-  EXPECT_FALSE(read_json("\"" + std::string(max_string + 1, 'a') + "\"").complete);
+  const auto quoted = [](std::size_t length) { return nlohmann::json(std::string(length, 'a')).dump(); };
+  EXPECT_TRUE(read_json(quoted(max_string)).complete);
+  EXPECT_FALSE(read_json(quoted(max_string + 1)).complete);
 }
 
 TEST(JsonText, DocumentsThatAreNotObjectsAreOneFault) {
