@@ -17,6 +17,9 @@ constexpr int first_port = 8080, last_port = 8179;
 /// s without a byte before a connection is given up.
 constexpr int read_timeout_s = 5, write_timeout_s = 5;
 
+/// Connections that may wait to be accepted.
+constexpr int backlog = 128;
+
 Problem refusal(int status, const std::string& detail) {
   Problem problem;
   problem.status = status;
@@ -69,6 +72,8 @@ std::optional<Problem> screen_request(const httplib::Request& request, const Lim
   }
   return {};
 }
+
+void PatientServer::widen_backlog() { ::listen(svr_sock_, backlog); }
 
 HttpServer::HttpServer(Service& service) : service_(service) {
   install_limits();
@@ -131,14 +136,14 @@ void HttpServer::install_handlers() {
 }
 
 int HttpServer::bind(const std::string& host, int port) {
-  if (port != 0) {
-    if (http_.bind_to_port(host, port)) return port;
-    throw std::runtime_error("port " + std::to_string(port) + " on " + host + " is not free");
-  }
-  for (int candidate = first_port; candidate <= last_port; ++candidate)
-    if (http_.bind_to_port(host, candidate)) return candidate;
-  throw std::runtime_error("no free port from " + std::to_string(first_port) + " to " +
-                           std::to_string(last_port));
+  const int first = port != 0 ? port : first_port, last = port != 0 ? port : last_port;
+  for (int candidate = first; candidate <= last; ++candidate)
+    if (http_.bind_to_port(host, candidate)) {
+      http_.widen_backlog();
+      return candidate;
+    }
+  if (port != 0) throw std::runtime_error("port " + std::to_string(port) + " on " + host + " is not free");
+  throw std::runtime_error("no free port from " + std::to_string(first) + " to " + std::to_string(last));
 }
 
 void HttpServer::serve() { http_.listen_after_bind(); }

@@ -14,6 +14,14 @@ namespace quicksand {
 /// 400), too large (413), not JSON where a case is wanted (415). Empty when it may pass.
 std::optional<Problem> screen_request(const httplib::Request& request, const Limits& limits);
 
+/// The library's server, whose queue of connections not yet accepted is widened: its own holds five, and a
+/// sixth client at the same moment would wait a second for its system to try again.
+class PatientServer : public httplib::Server {
+ public:
+  /// After binding.
+  void widen_backlog();
+};
+
 /// The HTTP face of a Service: cpp-httplib with everything closed that it leaves open by itself.
 class HttpServer {
  public:
@@ -32,7 +40,7 @@ class HttpServer {
   void install_handlers();
 
   Service& service_;
-  httplib::Server http_;
+  PatientServer http_;
 };
 
 }  // namespace quicksand

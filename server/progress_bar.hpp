@@ -30,7 +30,7 @@ class ProgressBar {
 
 /// One line without its end: bar, percent, stage, simulated time, step, time step, what is left.
 std::string progress_text(const Progress& progress);
-/// Seconds as "12 s", "3 min 05 s" or "1 h 02 min".
+/// Seconds as "0.4 s", "12 s", "3 min 05 s" or "1 h 02 min".
 std::string duration_text(double seconds);
 
 }  // namespace quicksand

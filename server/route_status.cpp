@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <charconv>
 #include <chrono>
 #include <optional>
@@ -60,10 +61,12 @@ StoredRun wait_for_news(Service& service, const Call& call, int seconds) {
 void get_run(Service& service, const Call& call, httplib::Response& response) {
   const auto wait = preferred_wait(call.request, service.limits.max_wait_s);
   StoredRun run = run_of(service, call);
-  const Waiter waiter(service);
-  if (wait && waiter.admitted()) {
-    run = wait_for_news(service, call, *wait);
-    response.set_header("Preference-Applied", "wait=" + std::to_string(*wait));
+  if (wait) {
+    const Waiter waiter(service);
+    if (waiter.admitted()) {
+      run = wait_for_news(service, call, *wait);
+      response.set_header("Preference-Applied", "wait=" + std::to_string(*wait));
+    }
   }
   const std::string etag = weak_etag(run);
   response.set_header("ETag", etag);

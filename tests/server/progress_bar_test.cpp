@@ -8,7 +8,7 @@ namespace quicksand {
 namespace {
 
 TEST(DurationText, ChoosesItsUnit) {
-  EXPECT_EQ(duration_text(0.4), "0 s");
+  EXPECT_EQ(duration_text(0.44), "0.4 s");
   EXPECT_EQ(duration_text(59.4), "59 s");
   EXPECT_EQ(duration_text(59.6), "1 min 00 s");
   EXPECT_EQ(duration_text(3725), "1 h 02 min");
