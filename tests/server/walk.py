@@ -284,8 +284,12 @@ class ActiveRunTest(ServerTest):
     def test_long_polls_leave_room_for_others(self):
         running = self.submit(endless_case())
         limit = self.server.get("/v1/service-info").json()["limits"]["max_waiters"]
-        polls = [threading.Thread(target=self.server.get, args=[f"/v1/runs/{running}"], kwargs={"Prefer": "wait=30"})
-                 for _ in range(limit)]
+
+        def hold():  # until it has had a place among those who wait
+            while not self.server.get(f"/v1/runs/{running}", Prefer="wait=30").headers["Preference-Applied"]:
+                time.sleep(0.05)
+
+        polls = [threading.Thread(target=hold) for _ in range(limit)]
         for poll in polls:
             poll.start()
         deadline = time.monotonic() + 20  # when all are in, one more is answered at once
