@@ -48,7 +48,9 @@ class Quantity:
         unit = text_of(data.attrs.get("unit", ""))
         if self.name == "displacement":
             self.unit, self.factor = "mm", 1e3
+            self.smallest_span = 0.1  # mm
         else:
+            self.smallest_span = 0.0
             self.unit, self.factor = SHOWN_UNIT.get(unit, (unit, 1.0))
         self.label = text.replace("_", " ").replace(".", " ") + (f" ({self.unit})" if self.unit not in ("", "-", "–") else "")
 
@@ -63,15 +65,16 @@ def text_of(value):
     return value.decode() if isinstance(value, bytes) else str(value)
 
 
-def limits(values):
-    """Colour range that a few outliers do not spoil."""
-    values = np.concatenate(values) if values else np.zeros(0)
+def limits(values, smallest_span):
+    """Colour range that a few outliers do not spoil, nor the last digits of what is at rest."""
+    values = np.concatenate(values)
     values = values[np.isfinite(values)]
     if not len(values):
         return Normalize(0, 1)
     low, high = np.percentile(values, [0.5, 99.5])
-    if high - low < 1e-9 * max(1e-3, abs(high)):
-        low, high = low - 0.5, high + 0.5
+    spare = max(smallest_span, 1e-9 * abs(high), 1e-30) - (high - low)
+    if spare > 0:
+        low, high = low - spare / 2, high + spare / 2
     return Normalize(low, high)
 
 
@@ -160,12 +163,19 @@ def point_spacing(case):
 
 
 def panel_grid(count, case):
-    """Rows and columns that bring the picture nearest to 16:10."""
+    """Rows and columns that bring the picture near 16:10 with few panels left empty."""
     low, high = case["domain"]["min"], case["domain"]["max"]
     aspect = (high[0] - low[0]) / (high[1] - low[1])
-    columns = min(range(1, count + 1),
-                  key=lambda c: (abs(math.log(c * aspect / math.ceil(count / c) / 1.6)), c))
-    return math.ceil(count / columns), columns, aspect
+
+    def rows(columns):
+        return math.ceil(count / columns)
+
+    def cost(columns):
+        spare = rows(columns) * columns - count
+        return abs(math.log(columns * aspect / rows(columns) / 1.6)) + spare / count
+
+    columns = min(range(1, count + 1), key=cost)
+    return rows(columns), columns, aspect
 
 
 def draw_series(axes, file, name):
@@ -190,9 +200,9 @@ def picture(file, frames, case, water, soil, series, title):
     for spare in axes[len(frames):]:
         spare.set_visible(False)
     moving = [k for k, b in enumerate(case.get("bodies", [])) if b["kind"] != "water" and not b.get("fixed")]
-    norms = {"water": limits([water.of(f)[f["phase"][()] == 1] for f in frames] if water else []),
-             "soil": limits([soil.of(f)[(f["phase"][()] == 0) & np.isin(f["body"][()], moving)] for f in frames]
-                            if soil else [])}
+    norms = {"water": limits([water.of(f)[f["phase"][()] == 1] for f in frames], water.smallest_span),
+             "soil": limits([soil.of(f)[(f["phase"][()] == 0) & np.isin(f["body"][()], moving)] for f in frames],
+                            soil.smallest_span)}
     for panel_axes, frame in zip(axes, frames):
         stage = text_of(frame.attrs.get("stage", ""))
         draw_house(panel_axes, case, stage)
