@@ -13,9 +13,6 @@
 namespace quicksand {
 namespace {
 
-/// More faults than a person reads; bounds the work on hostile input and the size of an answer.
-constexpr std::size_t max_faults = 1000;
-
 void append(std::vector<Fault>& to, std::vector<Fault> more) {
   to.insert(to.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
 }
@@ -29,7 +26,7 @@ std::vector<Fault> presentable(std::vector<Fault> faults) {
   if (kept.size() > max_faults) {
     const std::size_t rest = kept.size() - max_faults;
     kept.resize(max_faults);
-    kept.push_back({"", "and " + std::to_string(rest) + " more faults: mend these first"});
+    kept.push_back({"", "and at least " + std::to_string(rest) + " more faults: mend these first"});
   }
   return kept;
 }
@@ -47,7 +44,7 @@ Scene read_scene(const nlohmann::json& document, const std::optional<Preset>& pr
   append(faults, without_consequences(std::move(choices), unreadable));
 
   std::vector<Fault> impossible = check(scene);
-  if (impossible.size() > max_faults) impossible.resize(max_faults);
+  if (impossible.size() > max_faults) impossible.resize(max_faults + 1);  // one more: to say so
   append(faults, without_consequences(std::move(impossible), refused));
   return scene;
 }

@@ -11,7 +11,8 @@ namespace quicksand {
 
 struct ParsedCase {
   std::optional<Scene> scene;  ///< set exactly when `faults` is empty
-  std::vector<Fault> faults;   ///< all of them: syntax, duplicate and unknown keys, types, ranges, check(scene)
+  std::vector<Fault>
+      faults;  ///< all of them: syntax, duplicate and unknown keys, types, ranges, check(scene)
 };
 
 /// Case text (`quicksand.case/1`) → Scene. `preset` replaces the case's own `numerics.preset`.

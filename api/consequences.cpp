@@ -24,7 +24,9 @@ bool matches(std::string_view pattern, std::string_view pointer, bool below) {
   return below || pointer.empty();
 }
 
-bool related(const std::string& a, const std::string& b) { return matches(a, b, true) || matches(b, a, true); }
+bool related(const std::string& a, const std::string& b) {
+  return matches(a, b, true) || matches(b, a, true);
+}
 
 /// A fault at or below `fault` says nothing while a place that `refused` describes is refused.
 struct Doubt {
@@ -76,7 +78,8 @@ bool doubtful(const Fault& fault, const std::string& refused) {
 
 std::vector<Fault> without_consequences(std::vector<Fault> faults, const std::set<std::string>& refused) {
   std::erase_if(faults, [&](const Fault& fault) {
-    return std::any_of(refused.begin(), refused.end(), [&](const std::string& place) { return doubtful(fault, place); });
+    return std::any_of(refused.begin(), refused.end(),
+                       [&](const std::string& place) { return doubtful(fault, place); });
   });
   return faults;
 }

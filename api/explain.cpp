@@ -38,7 +38,8 @@ bool has_type(const json& schema, const std::string& type) {
 
 bool type_fits(const json& schema, const json& value) {
   if (!schema.contains("type")) return true;
-  if (value.is_number()) return has_type(schema, "number") || (value.is_number_integer() && has_type(schema, "integer"));
+  if (value.is_number())
+    return has_type(schema, "number") || (value.is_number_integer() && has_type(schema, "integer"));
   return has_type(schema, value.type_name());  // null, boolean, string, array, object
 }
 
@@ -53,23 +54,24 @@ bool range_fits(const json& schema, double value) {
 
 /// UTF-8 characters, not bytes, as JSON Schema counts.
 std::size_t characters(const std::string& text) {
-  return static_cast<std::size_t>(
-      std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; }));
+  return static_cast<std::size_t>(std::count_if(
+      text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; }));
 }
 
 bool text_fits(const json& schema, const std::string& text) {
   if (characters(text) < schema.value("minLength", std::size_t{0})) return false;
   if (schema.contains("maxLength") && characters(text) > schema["maxLength"].get<std::size_t>()) return false;
-  return !schema.contains("pattern") || std::regex_search(text, std::regex(schema["pattern"].get<std::string>()));
+  return !schema.contains("pattern") ||
+         std::regex_search(text, std::regex(schema["pattern"].get<std::string>()));
 }
 
 bool scalar_fits(const json& root, const json& schema, const json& value) {
   if (schema.contains("anyOf"))
-    return std::any_of(schema["anyOf"].begin(), schema["anyOf"].end(), [&](const json& option) {
-      return scalar_fits(root, resolved(root, option), value);
-    });
+    return std::any_of(schema["anyOf"].begin(), schema["anyOf"].end(),
+                       [&](const json& option) { return scalar_fits(root, resolved(root, option), value); });
   if (schema.contains("const")) return value == schema["const"];
-  if (schema.contains("enum")) return std::find(schema["enum"].begin(), schema["enum"].end(), value) != schema["enum"].end();
+  if (schema.contains("enum"))
+    return std::find(schema["enum"].begin(), schema["enum"].end(), value) != schema["enum"].end();
   if (!type_fits(schema, value)) return false;
   if (value.is_number()) return range_fits(schema, value.get<double>());
   return !value.is_string() || text_fits(schema, value.get_ref<const std::string&>());
@@ -98,7 +100,8 @@ std::string nearest(const std::string& key, const json& properties) {
   std::string best;
   std::size_t best_distance = std::max<std::size_t>(2, key.size() / 3) + 1;
   for (const auto& item : properties.items())
-    if (const std::size_t d = distance(key, item.key()); d < best_distance) best_distance = d, best = item.key();
+    if (const std::size_t d = distance(key, item.key()); d < best_distance)
+      best_distance = d, best = item.key();
   return best;
 }
 
@@ -113,14 +116,16 @@ void refuse(Explanation& out, const std::string& pointer, std::string detail) {
   out.faults.push_back({pointer, std::move(detail)});
 }
 
-void explain_unknown(const json& properties, const std::string& key, const std::string& pointer, Explanation& out) {
+void explain_unknown(const json& properties, const std::string& key, const std::string& pointer,
+                     Explanation& out) {
   const std::string meant = nearest(key, properties);
   std::string detail = "unknown key " + shown(key);
   if (!meant.empty()) {
     detail += ": did you mean \"" + meant + "\"?";
     out.refused.insert(pointer + "/" + meant);
   }
-  refuse(out, pointer + "/" + pointer_step(key), detail + (meant.empty() ? ". " : " ") + "Known here: " + keys_of(properties));
+  refuse(out, pointer + "/" + pointer_step(key),
+         detail + (meant.empty() ? ". " : " ") + "Known here: " + keys_of(properties));
 }
 
 /// Names of members that are chosen freely, such as those of soils. The validator reports a wrong one at the
@@ -145,18 +150,23 @@ void explain_members(const json& root, const json& schema, const json& value, co
   const bool closed = schema.contains("additionalProperties") && schema["additionalProperties"] == false;
   std::size_t known = 0;
   for (const auto& item : value.items()) {
-    if (properties.contains(item.key())) ++known;
-    else if (closed) explain_unknown(properties, item.key(), pointer, out);
+    if (properties.contains(item.key()))
+      ++known;
+    else if (closed)
+      explain_unknown(properties, item.key(), pointer, out);
     explain_names(root, schema, item.key(), item.value(), pointer + "/" + pointer_step(item.key()), out);
   }
   if (schema.contains("required"))
     for (const json& key : schema["required"])
       if (!value.contains(key.get_ref<const std::string&>()))
-        refuse(out, pointer + "/" + key.get<std::string>(), "is missing: give " + allowed(root, properties[key.get<std::string>()]));
+        refuse(out, pointer + "/" + key.get<std::string>(),
+               "is missing: give " + allowed(root, properties[key.get<std::string>()]));
   const std::size_t counted = closed ? known : value.size();
   if (counted > schema.value("maxProperties", counted) || (value.empty() && schema.contains("minProperties")))
-    refuse(out, pointer, closed ? "give exactly one of " + keys_of(properties) + ", not " + std::to_string(counted)
-                                : "holds " + std::to_string(counted) + " entries: at most " + schema["maxProperties"].dump());
+    refuse(out, pointer,
+           closed
+               ? "give exactly one of " + keys_of(properties) + ", not " + std::to_string(counted)
+               : "holds " + std::to_string(counted) + " entries: at most " + schema["maxProperties"].dump());
 }
 
 /// Shortest text of a number; the usual one would write 1e7 as 10000000.0.
@@ -177,7 +187,8 @@ std::string between(const json& schema, const char* low, const char* high) {
 std::string range(const json& schema) {
   std::string text;
   const auto add = [&](const char* key, const char* words) {
-    if (schema.contains(key)) text += (text.empty() ? " " : " and ") + std::string(words) + " " + number_text(schema[key]);
+    if (schema.contains(key))
+      text += (text.empty() ? " " : " and ") + std::string(words) + " " + number_text(schema[key]);
   };
   add("exclusiveMinimum", "above");
   add("minimum", "at least");
@@ -190,7 +201,9 @@ std::string range(const json& schema) {
 
 std::string allowed(const json& root, const json& reference) {
   const json& schema = resolved(root, reference);
-  const auto join = [](std::string all, const std::string& next) { return all.empty() ? next : all + " or " + next; };
+  const auto join = [](std::string all, const std::string& next) {
+    return all.empty() ? next : all + " or " + next;
+  };
   std::string text;
   if (schema.contains("anyOf")) {
     for (const json& option : schema["anyOf"]) text = join(text, allowed(root, option));
@@ -216,7 +229,8 @@ std::string allowed(const json& root, const json& reference) {
 
 const json* descend(const json& root, const json& reference, const std::string& step) {
   const json& schema = resolved(root, reference);
-  if (schema.contains("properties") && schema["properties"].contains(step)) return &schema["properties"][step];
+  if (schema.contains("properties") && schema["properties"].contains(step))
+    return &schema["properties"][step];
   if (schema.contains("items")) return &schema["items"];
   if (schema.contains("additionalProperties") && schema["additionalProperties"].is_object())
     return &schema["additionalProperties"];
@@ -232,8 +246,9 @@ void explain(const json& root, const json& reference, const json& value, const s
     return refuse(out, pointer, detail);
   }
   if (value.is_object()) explain_members(root, schema, value, pointer, out);
-  if (value.is_array() && (value.size() < schema.value("minItems", std::size_t{0}) ||
-                           (schema.contains("maxItems") && value.size() > schema["maxItems"].get<std::size_t>())))
+  if (value.is_array() &&
+      (value.size() < schema.value("minItems", std::size_t{0}) ||
+       (schema.contains("maxItems") && value.size() > schema["maxItems"].get<std::size_t>())))
     refuse(out, pointer, shown(value) + " is not allowed: give " + allowed(root, reference));
 }
 

@@ -21,7 +21,8 @@ void explain(const nlohmann::json& root, const nlohmann::json& schema, const nlo
              const std::string& pointer, Explanation& out);
 
 /// The schema node for member or item `step` of a value governed by `schema`; null if there is none.
-const nlohmann::json* descend(const nlohmann::json& root, const nlohmann::json& schema, const std::string& step);
+const nlohmann::json* descend(const nlohmann::json& root, const nlohmann::json& schema,
+                              const std::string& step);
 
 /// "a number above 0 and below 1 (unit m)" and the like.
 std::string allowed(const nlohmann::json& root, const nlohmann::json& schema);

@@ -68,14 +68,18 @@ void check_initial(const Place& place, const Initial& initial, bool water, bool 
   if (water && !place["pressure"].refused()) {
     const std::string why = with("pressure", initial.pressure);
     if (initial.pressure != InitialPressure::hydrostatic) idle(place, {"water_table"}, why);
-    if (initial.pressure != InitialPressure::uniform) idle(place, {"uniform_pressure"}, why);
-    else needed(place, {"uniform_pressure"}, why);
+    if (initial.pressure != InitialPressure::uniform)
+      idle(place, {"uniform_pressure"}, why);
+    else
+      needed(place, {"uniform_pressure"}, why);
   }
   if (soil && !place["stress"].refused()) {
     const std::string why = with("stress", initial.stress);
     if (initial.stress != InitialStress::k0) idle(place, {"k0"}, why);
-    if (initial.stress != InitialStress::uniform) idle(place, {"uniform_stress"}, why);
-    else needed(place, {"uniform_stress"}, why);
+    if (initial.stress != InitialStress::uniform)
+      idle(place, {"uniform_stress"}, why);
+    else
+      needed(place, {"uniform_stress"}, why);
   }
 }
 
@@ -88,14 +92,17 @@ void check_load(const Place& place, const Load& load) {
   }
   needed(place, {"plate"}, why);
   idle(place, {"traction"}, why);
-  if (load.plate_force) idle(place, {"plate_velocity"}, "with plate_force");
-  else needed(place, {"plate_velocity"}, "without plate_force");
+  if (load.plate_force)
+    idle(place, {"plate_velocity"}, "with plate_force");
+  else
+    needed(place, {"plate_velocity"}, "without plate_force");
 }
 
 void check_numerics(const Place& place, const Numerics& numerics, bool water) {
   if (numerics.transfer != Transfer::flip) idle(place, {"pic_rate"}, with("transfer", numerics.transfer));
   if (numerics.time_step) idle(place, {"time_step_factor"}, "with a fixed time_step");
-  if (!water) return idle(place, {"pressure", "pressure_tolerance", "drift_time"}, "in a scene without water");
+  if (!water)
+    return idle(place, {"pressure", "pressure_tolerance", "drift_time"}, "in a scene without water");
   if (numerics.pressure != PressureScheme::implicit)
     idle(place, {"pressure_tolerance"}, with("pressure", numerics.pressure));
 }
@@ -103,11 +110,13 @@ void check_numerics(const Place& place, const Numerics& numerics, bool water) {
 }  // namespace
 
 bool has_water(const Scene& scene) {
-  return std::any_of(scene.bodies.begin(), scene.bodies.end(), [](const Body& b) { return b.kind != BodyKind::soil; });
+  return std::any_of(scene.bodies.begin(), scene.bodies.end(),
+                     [](const Body& b) { return b.kind != BodyKind::soil; });
 }
 
 bool has_soil(const Scene& scene) {
-  return std::any_of(scene.bodies.begin(), scene.bodies.end(), [](const Body& b) { return b.kind != BodyKind::water; });
+  return std::any_of(scene.bodies.begin(), scene.bodies.end(),
+                     [](const Body& b) { return b.kind != BodyKind::water; });
 }
 
 void check_choices(const nlohmann::json& document, const Scene& scene, Reading& reading) {

@@ -42,7 +42,8 @@ class StrictBuilder final : public nlohmann::json_sax<json> {
     return true;
   }
 
-  bool parse_error(std::size_t position, const std::string&, const nlohmann::detail::exception& error) override {
+  bool parse_error(std::size_t position, const std::string&,
+                   const nlohmann::detail::exception& error) override {
     const std::size_t at = std::min(position > 0 ? position - 1 : 0, text_.size());
     const auto line = 1 + std::count(text_.begin(), text_.begin() + static_cast<std::ptrdiff_t>(at), '\n');
     const std::size_t before = at == 0 ? std::string::npos : text_.rfind('\n', at - 1);

@@ -11,9 +11,10 @@ namespace quicksand {
 std::string pointer_step(const std::string& key);
 
 struct JsonText {
-  nlohmann::json value;       ///< discarded when `complete` is false
-  bool complete = false;      ///< the text is JSON within the limits below; duplicate keys do not change that
-  std::vector<Fault> faults;  ///< syntax (pointer of the place reached, line and column), limits, duplicate keys
+  nlohmann::json value;   ///< discarded when `complete` is false
+  bool complete = false;  ///< the text is JSON within the limits below; duplicate keys do not change that
+  std::vector<Fault>
+      faults;  ///< syntax (pointer of the place reached, line and column), limits, duplicate keys
 };
 
 /// Deepest nesting of a case; deeper text is refused before it is stored.

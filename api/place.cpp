@@ -70,8 +70,9 @@ void Place::read(Vec3& out) const {
   if (!value_ || broken()) return;
   const std::size_t expected = reading_->dimensions;
   if (expected != 0 && value_->size() != expected)
-    return reading_->refuse(pointer_, "a list of " + std::to_string(value_->size()) + " is not allowed: give " +
-                                          std::to_string(expected) + " numbers, as domain.dimension asks");
+    return reading_->refuse(pointer_, "a list of " + std::to_string(value_->size()) +
+                                          " is not allowed: give " + std::to_string(expected) +
+                                          " numbers, as domain.dimension asks");
   for (std::size_t axis = 0; axis < value_->size(); ++axis) out[axis] = (*value_)[axis].get<double>();
 }
 
@@ -92,7 +93,8 @@ void Place::read(Region& out) const {
   } else if (const Place polygon = here["polygon"]; polygon.given()) {
     region.kind = Region::Kind::polygon;
     if (!broken())
-      for (const auto& vertex : *polygon.value_) region.vertices.push_back({vertex[0].get<double>(), vertex[1].get<double>()});
+      for (const auto& vertex : *polygon.value_)
+        region.vertices.push_back({vertex[0].get<double>(), vertex[1].get<double>()});
   } else if (const Place disc = here["disc"]; disc.given()) {
     region.kind = Region::Kind::disc;
     disc["center"].read(region.center);

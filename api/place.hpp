@@ -20,8 +20,8 @@ struct Reading {
   bool broken(const std::string& pointer) const;
 };
 
-/// A place in the document that may be absent. `read` leaves its argument as it is when the place is absent or
-/// was refused, so that what is right can be read beside what is wrong.
+/// A place in the document that may be absent. `read` leaves its argument as it is when the place is absent
+/// or was refused, so that what is right can be read beside what is wrong.
 class Place {
  public:
   Place(const nlohmann::json& root, Reading& reading) : value_(&root), reading_(&reading) {}
@@ -44,12 +44,12 @@ class Place {
   void read(std::string& out) const;
   void read(std::optional<double>& out) const;  ///< null: no value
   void read(std::vector<std::string>& out) const;
-  void read(Vec3& out) const;  ///< refuses a length other than the scene's dimensions
+  void read(Vec3& out) const;     ///< refuses a length other than the scene's dimensions
   void read(Segment& out) const;  ///< with a fault in it: one of no length
-  void read(Region& out) const;  ///< a region with a fault anywhere becomes one that holds nothing
+  void read(Region& out) const;   ///< a region with a fault anywhere becomes one that holds nothing
 
   template <typename Choice>
-    requires std::is_enum_v<Choice>
+  requires std::is_enum_v<Choice>
   void read(Choice& out) const {
     std::string word;
     read(word);

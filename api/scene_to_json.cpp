@@ -65,16 +65,22 @@ Json Writer::domain() const {
     sides[side_words[k]]["kind"] = word_of(d.sides[k].kind);
     if (d.sides[k].kind == SideKind::reservoir) sides[side_words[k]]["head"] = d.sides[k].head;
   }
-  return {{"dimension", word_of(d.dimension)}, {"min", vector(d.min)}, {"max", vector(d.max)},
-          {"cell_size", d.cell_size},          {"sides", sides}};
+  return {{"dimension", word_of(d.dimension)},
+          {"min", vector(d.min)},
+          {"max", vector(d.max)},
+          {"cell_size", d.cell_size},
+          {"sides", sides}};
 }
 
 Json Writer::soil_of(const Soil& s) const {
-  Json json{{"grain_density", s.grain_density}, {"porosity", s.porosity}, {"max_porosity", optional(s.max_porosity)}};
+  Json json{{"grain_density", s.grain_density},
+            {"porosity", s.porosity},
+            {"max_porosity", optional(s.max_porosity)}};
   if (water) {
     const bool ergun = s.permeability.law == PermeabilityLaw::ergun;
     json["permeability"] = {{"law", word_of(s.permeability.law)}};
-    json["permeability"][ergun ? "grain_size" : "value"] = ergun ? s.permeability.grain_size : s.permeability.value;
+    json["permeability"][ergun ? "grain_size" : "value"] =
+        ergun ? s.permeability.grain_size : s.permeability.value;
   }
   Json& model = json["model"];
   model = {{"law", word_of(s.model.law)},
@@ -94,7 +100,8 @@ Json Writer::materials() const {
   for (const auto& [name, s] : scene.soils) json["soils"][name] = soil_of(s);
   if (water) {
     json["water"] = {{"density", scene.water.density}};
-    json["water"]["bulk_modulus"] = scene.water.bulk_modulus ? Json(*scene.water.bulk_modulus) : Json("incompressible");
+    json["water"]["bulk_modulus"] =
+        scene.water.bulk_modulus ? Json(*scene.water.bulk_modulus) : Json("incompressible");
     json["water"]["viscosity"] = scene.water.viscosity;
   }
   return json;
@@ -129,8 +136,8 @@ Json Writer::initial() const {
     json["stress"] = word_of(i.stress);
     if (i.stress == InitialStress::k0) json["k0"] = optional(i.k0);
     if (i.stress == InitialStress::uniform)
-      json["uniform_stress"] = std::vector<double>(i.uniform_stress.begin(),
-                                                   i.uniform_stress.begin() + (dimensions == 3 ? 6 : 4));
+      json["uniform_stress"] =
+          std::vector<double>(i.uniform_stress.begin(), i.uniform_stress.begin() + (dimensions == 3 ? 6 : 4));
   }
   return json;
 }
@@ -141,8 +148,10 @@ Json Writer::load(const Load& l) const {
     json["traction"] = vector(l.traction);
   } else {
     json["plate"] = segment(l.plate);
-    if (l.plate_force) json["plate_force"] = vector(*l.plate_force);
-    else json["plate_velocity"] = vector(l.plate_velocity);
+    if (l.plate_force)
+      json["plate_force"] = vector(*l.plate_force);
+    else
+      json["plate_velocity"] = vector(l.plate_velocity);
     json["rough"] = l.rough;
   }
   json["ramp"] = l.ramp;
@@ -151,7 +160,8 @@ Json Writer::load(const Load& l) const {
 
 Json Writer::stage(const Stage& s) const {
   Json json{{"name", s.name}, {"duration", s.duration}};
-  if (s.until_rest) json["until_rest"] = {{"speed", s.until_rest->speed}, {"at_least", s.until_rest->at_least}};
+  if (s.until_rest)
+    json["until_rest"] = {{"speed", s.until_rest->speed}, {"at_least", s.until_rest->at_least}};
   json["open_gates"] = s.open_gates;
   json["heads"] = Json(s.heads);
   if (s.heads.empty()) json["heads"] = Json::object();
@@ -164,7 +174,8 @@ Json Writer::stage(const Stage& s) const {
 
 Json Writer::output() const {
   const Output& o = scene.output;
-  Json json{{"frame_interval", o.frame_interval}, {"series_interval", o.series_interval}, {"fields", o.fields}};
+  Json json{
+      {"frame_interval", o.frame_interval}, {"series_interval", o.series_interval}, {"fields", o.fields}};
   json["probes"] = list(o.probes, [this](const Probe& p) {
     return Json{{"name", p.name}, {"at", vector(p.at)}, {"quantity", p.quantity}};
   });
@@ -208,7 +219,9 @@ nlohmann::ordered_json scene_to_json(const Scene& scene) {
   json["materials"] = w.materials();
   json["bodies"] = list(scene.bodies, [&](const Body& b) { return w.body(b); });
   json["walls"] = list(scene.walls, [&](const Wall& wall) { return w.wall(wall); });
-  json["gates"] = list(scene.gates, [&](const Gate& g) { return Json{{"name", g.name}, {"line", w.segment(g.line)}}; });
+  json["gates"] = list(scene.gates, [&](const Gate& g) {
+    return Json{{"name", g.name}, {"line", w.segment(g.line)}};
+  });
   json["reservoirs"] = list(scene.reservoirs, [&](const Reservoir& r) {
     return Json{{"name", r.name}, {"line", w.segment(r.line)}, {"head", r.head}};
   });

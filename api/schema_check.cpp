@@ -33,7 +33,8 @@ const CompiledSchema& compiled_schema() {
 /// The validator's path "<root>", "[bodies]", "[0]" as member names and indices.
 Path plain_path(const Path& context) {
   Path path;
-  for (std::size_t k = 1; k < context.size(); ++k) path.push_back(context[k].substr(1, context[k].size() - 2));
+  for (std::size_t k = 1; k < context.size(); ++k)
+    path.push_back(context[k].substr(1, context[k].size() - 2));
   return path;
 }
 
@@ -62,12 +63,14 @@ Explanation check_schema(const json& document) {
   Explanation out;
   valijson::Validator validator;
   valijson::ValidationResults results;
-  if (validator.validate(compiled_schema().rules, valijson::adapters::NlohmannJsonAdapter(document), &results))
+  if (validator.validate(compiled_schema().rules, valijson::adapters::NlohmannJsonAdapter(document),
+                         &results))
     return out;
   // The validator reports every refused place and again each of its parents; a place is explained once, and
   // parents, with which nothing is wrong by themselves, drop out.
   std::set<std::string> seen;
   for (const auto& error : results) {
+    if (out.faults.size() > max_faults) break;
     const Path path = plain_path(error.context);
     const std::string pointer = pointer_of(path);
     if (seen.insert(pointer).second) explain_place(document, path, pointer, out);

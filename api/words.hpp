@@ -33,7 +33,8 @@ constexpr Words<SoilLaw, 3> words_of(SoilLaw) {
            {SoilLaw::modified_cam_clay, "modified_cam_clay"}}};
 }
 constexpr Words<BodyKind, 3> words_of(BodyKind) {
-  return {{{BodyKind::soil, "soil"}, {BodyKind::saturated_soil, "saturated_soil"}, {BodyKind::water, "water"}}};
+  return {
+      {{BodyKind::soil, "soil"}, {BodyKind::saturated_soil, "saturated_soil"}, {BodyKind::water, "water"}}};
 }
 constexpr Words<InitialPressure, 3> words_of(InitialPressure) {
   return {{{InitialPressure::hydrostatic, "hydrostatic"},

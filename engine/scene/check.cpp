@@ -19,16 +19,20 @@ std::string at_soil(const std::string& name, const std::string& rest) {
 
 std::string text(double value) {
   char buffer[32];
-  const auto end = std::to_chars(buffer, buffer + sizeof buffer, value == 0 ? 0.0 : value, std::chars_format::general, 9);
+  const auto end =
+      std::to_chars(buffer, buffer + sizeof buffer, value == 0 ? 0.0 : value, std::chars_format::general, 9);
   return std::string(buffer, end.ptr);
 }
 
-std::string text(const Vec3& point) { return std::string("(") + text(point[0]) + ", " + text(point[1]) + ")"; }
+std::string text(const Vec3& point) {
+  return std::string("(") + text(point[0]) + ", " + text(point[1]) + ")";
+}
 
 std::string cell_words(const Scene& scene) {
   const double factor = scene.numerics.cell_size_factor;
   std::string words = "cells of " + text(scene.cell_size()) + " m";
-  if (factor != 1) words += " (cell_size " + text(scene.domain.cell_size) + " × cell_size_factor " + text(factor) + ")";
+  if (factor != 1)
+    words += " (cell_size " + text(scene.domain.cell_size) + " × cell_size_factor " + text(factor) + ")";
   return words;
 }
 
@@ -46,7 +50,8 @@ void check_supported(const Scene& scene, Faults& faults) {
     refuse(domain.sides[k].kind == SideKind::reservoir, pointer, "a reservoir side");
   }
   for (const auto& [name, soil] : scene.soils) {
-    refuse(soil.permeability.law == PermeabilityLaw::ergun, at_soil(name, "/permeability/law"), "permeability law ergun");
+    refuse(soil.permeability.law == PermeabilityLaw::ergun, at_soil(name, "/permeability/law"),
+           "permeability law ergun");
     refuse(soil.model.law == SoilLaw::modified_cam_clay, at_soil(name, "/model/law"), "modified_cam_clay");
     refuse(soil.model.tension_cutoff.has_value(), at_soil(name, "/model/tension_cutoff"), "tension_cutoff");
   }
@@ -62,7 +67,8 @@ void check_supported(const Scene& scene, Faults& faults) {
   refuse(!scene.output.sections.empty(), "/output/sections", "a section");
   refuse(scene.numerics.kernel == Kernel::linear, "/numerics/kernel", "kernel linear");
   refuse(scene.numerics.transfer == Transfer::apic, "/numerics/transfer", "transfer apic");
-  refuse(scene.numerics.pressure == PressureScheme::explicit_scheme, "/numerics/pressure", "pressure explicit");
+  refuse(scene.numerics.pressure == PressureScheme::explicit_scheme, "/numerics/pressure",
+         "pressure explicit");
 }
 
 std::vector<Fault> check(const Scene& scene) {

@@ -43,11 +43,13 @@ struct Rows {
   /// To the last bit the coordinate that seeding gives the point.
   double coordinate(std::size_t along, long index) const {
     const auto cell = static_cast<double>(index / per_cell), in_cell = static_cast<double>(index % per_cell);
-    return scene.domain.min[along] + (cell + (in_cell + 0.5) / static_cast<double>(per_cell)) * scene.cell_size();
+    return scene.domain.min[along] +
+           (cell + (in_cell + 0.5) / static_cast<double>(per_cell)) * scene.cell_size();
   }
   /// First point at or above the coordinate.
   long first_from(double x) const {
-    long i = std::lround(std::clamp((x - scene.domain.min[axis]) / spacing - 0.5, -1.0, static_cast<double>(points)));
+    long i = std::lround(
+        std::clamp((x - scene.domain.min[axis]) / spacing - 0.5, -1.0, static_cast<double>(points)));
     while (i > 0 && coordinate(axis, i - 1) >= x) --i;
     while (i < points && coordinate(axis, i) < x) ++i;
     return std::max(i, 0L);
@@ -98,7 +100,8 @@ Ranges common(const Ranges& ranges, const Ranges& blocks) {
   return both;
 }
 
-/// Compares each range with the one that reaches farthest so far: finds an overlap of every body that has one.
+/// Compares each range with the one that reaches farthest so far: finds an overlap of every body that has
+/// one.
 void note_overlaps(const Rows& rows, long row, std::vector<Marked>& marked, Survey& survey) {
   std::sort(marked.begin(), marked.end(), [](const Marked& a, const Marked& b) {
     return std::pair(a.range.from, a.body) < std::pair(b.range.from, b.body);
@@ -158,11 +161,14 @@ Survey survey_bodies(const Scene& scene) {
 bool check_region(const Region& region, const std::string& pointer, Faults& faults) {
   const std::size_t before = faults.size();
   if (region.kind == Region::Kind::box && !(region.min[0] < region.max[0] && region.min[1] < region.max[1]))
-    faults.push_back({pointer + "/box", "from " + text(region.min) + " to " + text(region.max) + " is empty: max must exceed min"});
+    faults.push_back({pointer + "/box", "from " + text(region.min) + " to " + text(region.max) +
+                                            " is empty: max must exceed min"});
   if (region.kind == Region::Kind::polygon && crosses_itself(region.vertices))
-    faults.push_back({pointer + "/polygon", "the polygon crosses or touches itself: check the order of its corners"});
+    faults.push_back(
+        {pointer + "/polygon", "the polygon crosses or touches itself: check the order of its corners"});
   const char* key = region.kind == Region::Kind::union_of ? "/union/" : "/difference/";
-  for (std::size_t k = 0; k < region.parts.size(); ++k) check_region(region.parts[k], pointer + key + std::to_string(k), faults);
+  for (std::size_t k = 0; k < region.parts.size(); ++k)
+    check_region(region.parts[k], pointer + key + std::to_string(k), faults);
   return faults.size() == before;
 }
 
@@ -172,18 +178,20 @@ void check_bounds(const Scene& scene, const Body& body, const std::string& point
   const double h = scene.cell_size(), slack = slack_in_cells * h;
   bool inside = true, on_faces = true;
   for (std::size_t axis = 0; axis < 2 && !box.empty; ++axis) {
-    inside = inside && box.min[axis] >= scene.domain.min[axis] - slack && box.max[axis] <= scene.domain.max[axis] + slack;
+    inside = inside && box.min[axis] >= scene.domain.min[axis] - slack &&
+             box.max[axis] <= scene.domain.max[axis] + slack;
     for (const double x : {box.min[axis], box.max[axis]}) {
       const double cells = (x - scene.domain.min[axis]) / h;
       on_faces = on_faces && std::abs(cells - std::round(cells)) <= slack_in_cells;
     }
   }
   if (!inside)
-    faults.push_back({pointer, "reaches from " + text(box.min) + " to " + text(box.max) + ", outside the domain " +
-                                   text(scene.domain.min) + " to " + text(scene.domain.max)});
+    faults.push_back({pointer, "reaches from " + text(box.min) + " to " + text(box.max) +
+                                   ", outside the domain " + text(scene.domain.min) + " to " +
+                                   text(scene.domain.max)});
   else if (body.fixed && !on_faces)
-    faults.push_back({pointer, "a fixed body must fill whole " + cell_words(scene) + "; it reaches from " + text(box.min) +
-                                   " to " + text(box.max)});
+    faults.push_back({pointer, "a fixed body must fill whole " + cell_words(scene) + "; it reaches from " +
+                                   text(box.min) + " to " + text(box.max)});
 }
 
 void report(const Scene& scene, const Survey& survey, const std::set<std::size_t>& faulty, Faults& faults) {
@@ -191,19 +199,23 @@ void report(const Scene& scene, const Survey& survey, const std::set<std::size_t
     if (faulty.contains(k)) continue;
     const std::string pointer = at_index("bodies", k, "/region");
     if (survey.points[k] == 0)
-      faults.push_back({pointer, "holds no point at " + cell_words(scene) + " with " + std::to_string(scene.numerics.points_per_cell) +
+      faults.push_back({pointer, "holds no point at " + cell_words(scene) + " with " +
+                                     std::to_string(scene.numerics.points_per_cell) +
                                      " points per axis: make it larger or the cells smaller"});
     else if (const Overlap& blocked = survey.in_blocks[k]; blocked.points > 0)
       faults.push_back({pointer, "reaches into a wall block near " + text(blocked.place) + " (" +
-                                     std::to_string(blocked.points) + " of " + std::to_string(survey.points[k]) +
+                                     std::to_string(blocked.points) + " of " +
+                                     std::to_string(survey.points[k]) +
                                      " points): cut the block out, for instance with a difference"});
     else if (scene.bodies[k].fixed && survey.cuts_cells[k])
-      faults.push_back({pointer, "a fixed body must fill whole " + cell_words(scene) + ": some are filled partly"});
+      faults.push_back(
+          {pointer, "a fixed body must fill whole " + cell_words(scene) + ": some are filled partly"});
   }
   for (const auto& [pair, overlap] : survey.overlaps)
     faults.push_back({at_index("bodies", pair.second, "/region"),
-                      "overlaps the body \"" + scene.bodies[pair.first].name + "\" near " + text(overlap.place) + " (" +
-                          std::to_string(overlap.points) + " points): cut one of them, for instance with a difference"});
+                      "overlaps the body \"" + scene.bodies[pair.first].name + "\" near " +
+                          text(overlap.place) + " (" + std::to_string(overlap.points) +
+                          " points): cut one of them, for instance with a difference"});
 }
 
 }  // namespace
@@ -213,13 +225,15 @@ void check_bodies(const Scene& scene, Faults& faults) {
   for (const Body& body : scene.bodies) edges += edge_count(body.region);
   for (const Wall& wall : scene.walls) edges += wall.block ? edge_count(*wall.block) : 0;
   if (edges > max_edges)
-    return faults.push_back({"/bodies", "regions and blocks have " + std::to_string(edges) + " edges: at most " +
-                                            std::to_string(max_edges) + " are allowed; simplify polygons"});
+    return faults.push_back({"/bodies", "regions and blocks have " + std::to_string(edges) +
+                                            " edges: at most " + std::to_string(max_edges) +
+                                            " are allowed; simplify polygons"});
   std::set<std::size_t> faulty;
   for (std::size_t k = 0; k < scene.bodies.size(); ++k) {
     const std::string pointer = at_index("bodies", k, "/region");
     const std::size_t before = faults.size();
-    if (check_region(scene.bodies[k].region, pointer, faults)) check_bounds(scene, scene.bodies[k], pointer, faults);
+    if (check_region(scene.bodies[k].region, pointer, faults))
+      check_bounds(scene, scene.bodies[k], pointer, faults);
     if (faults.size() > before) faulty.insert(k);
   }
   report(scene, survey_bodies(scene), faulty, faults);

@@ -22,7 +22,8 @@ void check_stages(const Scene& scene, Faults& faults);
 void check_output(const Scene& scene, Faults& faults);
 /// The grid. False: it cannot be laid out, and nothing can be compared with it.
 bool check_grid(const Scene& scene, Faults& faults);
-/// Walls, gates, reservoirs, sections and probes against the grid and each other. Plane scenes with a sound grid.
+/// Walls, gates, reservoirs, sections and probes against the grid and each other. Plane scenes with a sound
+/// grid.
 void check_lines(const Scene& scene, Faults& faults);
 /// Regions of bodies against the domain, the blocks and each other. Plane scenes with a sound grid.
 void check_bodies(const Scene& scene, Faults& faults);
@@ -36,8 +37,8 @@ inline std::string at_index(const char* list, std::size_t index, const std::stri
 }
 std::string escaped(const std::string& name);  ///< a name as one step of a JSON pointer
 std::string at_soil(const std::string& name, const std::string& rest = {});
-std::string text(double value);         ///< shortest text that reads back as the value to 9 digits
-std::string text(const Vec3& point);    ///< "(x, y)"
+std::string text(double value);              ///< shortest text that reads back as the value to 9 digits
+std::string text(const Vec3& point);         ///< "(x, y)"
 std::string cell_words(const Scene& scene);  ///< "cells of 0.04 m (cell_size 0.02 × factor 2)"
 
 }  // namespace quicksand

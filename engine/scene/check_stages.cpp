@@ -28,8 +28,10 @@ void check_references(const std::vector<std::string>& names, const Items& items,
   std::set<std::string> seen;
   for (std::size_t k = 0; k < names.size(); ++k) {
     const std::string place = pointer + "/" + std::to_string(k);
-    if (!has_name(items, names[k])) faults.push_back({place, "there is no " + what + " \"" + names[k] + "\""});
-    else if (!seen.insert(names[k]).second) faults.push_back({place, "\"" + names[k] + "\" is listed twice"});
+    if (!has_name(items, names[k]))
+      faults.push_back({place, "there is no " + what + " \"" + names[k] + "\""});
+    else if (!seen.insert(names[k]).second)
+      faults.push_back({place, "\"" + names[k] + "\" is listed twice"});
   }
 }
 
@@ -39,8 +41,9 @@ void check_stage(const Scene& scene, std::size_t index, Faults& faults) {
   if (!(stage.duration > 0))
     faults.push_back({here("/duration"), text(stage.duration) + " s: give a time above 0"});
   if (stage.until_rest && stage.until_rest->at_least >= stage.duration)
-    faults.push_back({here("/until_rest/at_least"), text(stage.until_rest->at_least) + " s is not below the duration " +
-                                                        text(stage.duration) + " s: the stage could not end at rest"});
+    faults.push_back(
+        {here("/until_rest/at_least"), text(stage.until_rest->at_least) + " s is not below the duration " +
+                                           text(stage.duration) + " s: the stage could not end at rest"});
   check_references(stage.open_gates, scene.gates, here("/open_gates"), "gate", faults);
   if (stage.loads) check_references(*stage.loads, scene.loads, here("/loads"), "load", faults);
   check_references(stage.remove_bodies, scene.bodies, here("/remove_bodies"), "body", faults);
@@ -55,7 +58,8 @@ void check_gate_uses(const Scene& scene, Faults& faults) {
       return std::count(stage.open_gates.begin(), stage.open_gates.end(), scene.gates[k].name) > 0;
     });
     if (open == 0)
-      faults.push_back({at_index("gates", k), "no stage opens this gate: make it a wall, or name it in open_gates"});
+      faults.push_back(
+          {at_index("gates", k), "no stage opens this gate: make it a wall, or name it in open_gates"});
     else if (open == static_cast<std::ptrdiff_t>(scene.stages.size()))
       faults.push_back({at_index("gates", k), "every stage opens this gate: it has no effect; remove it"});
   }
@@ -68,24 +72,28 @@ void check_loads(const Scene& scene, Faults& faults) {
     if (body == scene.bodies.end())
       faults.push_back({at_index("loads", k, "/body"), "there is no body \"" + load.body + "\""});
     else if (body->kind == BodyKind::water || body->fixed)
-      faults.push_back({at_index("loads", k, "/body"), "\"" + load.body + "\" cannot carry a load: name a body of soil that is not fixed"});
+      faults.push_back({at_index("loads", k, "/body"),
+                        "\"" + load.body + "\" cannot carry a load: name a body of soil that is not fixed"});
     if (load.kind == Load::Kind::traction && load.traction == Vec3{0, 0, 0})
       faults.push_back({at_index("loads", k, "/traction"), "zero: the load has no effect"});
     const bool acts = std::any_of(scene.stages.begin(), scene.stages.end(), [&](const Stage& stage) {
       return !stage.loads || std::count(stage.loads->begin(), stage.loads->end(), load.name) > 0;
     });
-    if (!acts) faults.push_back({at_index("loads", k), "acts in no stage: remove it, or name it in a stage's loads"});
+    if (!acts)
+      faults.push_back({at_index("loads", k), "acts in no stage: remove it, or name it in a stage's loads"});
   }
 }
 
 bool any_body(const Scene& scene, BodyKind without) {
-  return std::any_of(scene.bodies.begin(), scene.bodies.end(), [&](const Body& b) { return b.kind != without; });
+  return std::any_of(scene.bodies.begin(), scene.bodies.end(),
+                     [&](const Body& b) { return b.kind != without; });
 }
 
 /// Whether something in the scene can ever show the quantity of a probe or field.
 std::string missing_for(const Scene& scene, const std::string& quantity) {
   static const std::set<std::string> of_water{"pore_pressure", "head", "water_velocity"};
-  static const std::set<std::string> of_soil{"soil_velocity", "porosity", "effective_stress", "plastic_strain"};
+  static const std::set<std::string> of_soil{"soil_velocity", "porosity", "effective_stress",
+                                             "plastic_strain"};
   if (of_water.contains(quantity) && !any_body(scene, BodyKind::soil)) return "no body holds water";
   if (of_soil.contains(quantity) && !any_body(scene, BodyKind::water)) return "no body is of soil";
   if (quantity == "head" && scene.gravity == Vec3{0, 0, 0}) return "head is not defined without gravity";
@@ -96,7 +104,8 @@ void check_probes(const Scene& scene, Faults& faults) {
   for (std::size_t k = 0; k < scene.output.probes.size(); ++k) {
     const Probe& probe = scene.output.probes[k];
     if (const std::string why = missing_for(scene, probe.quantity); !why.empty())
-      faults.push_back({at_index("output/probes", k, "/quantity"), probe.quantity + " has nothing to show: " + why});
+      faults.push_back(
+          {at_index("output/probes", k, "/quantity"), probe.quantity + " has nothing to show: " + why});
   }
 }
 
@@ -105,7 +114,8 @@ void check_heave(const Scene& scene, const HeaveWatch& watch, Faults& faults) {
   if (body == scene.bodies.end())
     faults.push_back({"/output/heave/body", "there is no body \"" + watch.body + "\""});
   else if (body->kind == BodyKind::water || body->fixed)
-    faults.push_back({"/output/heave/body", "\"" + watch.body + "\" cannot heave: name a body of soil that is not fixed"});
+    faults.push_back(
+        {"/output/heave/body", "\"" + watch.body + "\" cannot heave: name a body of soil that is not fixed"});
   const auto& probes = scene.output.probes;
   const auto head_probe = [&](const std::string& name, const char* pointer) {
     const auto probe = find_named(probes, name);
@@ -117,11 +127,12 @@ void check_heave(const Scene& scene, const HeaveWatch& watch, Faults& faults) {
   const auto above = head_probe(watch.above, "/output/heave/above");
   if (below == probes.end() || above == probes.end()) return;
   double drop = 0;  // how far one falls from `above` to `below`, times gravity
-  for (std::size_t axis = 0; axis < 3; ++axis) drop += scene.gravity[axis] * (below->at[axis] - above->at[axis]);
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    drop += scene.gravity[axis] * (below->at[axis] - above->at[axis]);
   if (!(drop > 0))
     faults.push_back({"/output/heave/below", "the probe \"" + watch.below + "\" at " + text(below->at) +
-                                                 " is not below \"" + watch.above + "\" at " + text(above->at) +
-                                                 ": no gradient between them"});
+                                                 " is not below \"" + watch.above + "\" at " +
+                                                 text(above->at) + ": no gradient between them"});
 }
 
 }  // namespace
@@ -139,15 +150,17 @@ void check_output(const Scene& scene, Faults& faults) {
   for (const Stage& stage : scene.stages) total += std::max(stage.duration, 0.0);
   const auto check_interval = [&](double interval, double most, const char* pointer, const char* what) {
     if (!(interval * most >= total))
-      faults.push_back({pointer, text(interval) + " s over " + text(total) + " s gives more than " + text(most) + " " +
-                                     what + ": give at least " + text(total / most) + " s"});
+      faults.push_back({pointer, text(interval) + " s over " + text(total) + " s gives more than " +
+                                     text(most) + " " + what + ": give at least " + text(total / most) +
+                                     " s"});
   };
   check_interval(output.frame_interval, max_frames, "/output/frame_interval", "frames");
   check_interval(output.series_interval, max_samples, "/output/series_interval", "samples");
   std::set<std::string> seen;
   for (std::size_t k = 0; k < output.fields.size(); ++k) {
     const std::string place = at_index("output/fields", k);
-    if (!seen.insert(output.fields[k]).second) faults.push_back({place, "\"" + output.fields[k] + "\" is listed twice"});
+    if (!seen.insert(output.fields[k]).second)
+      faults.push_back({place, "\"" + output.fields[k] + "\" is listed twice"});
     if (const std::string why = missing_for(scene, output.fields[k]); !why.empty())
       faults.push_back({place, output.fields[k] + " has nothing to show: " + why});
   }

@@ -14,18 +14,21 @@ void check_unique(const Items& items, const char* list, Faults& faults) {
   std::set<std::string> seen;
   for (std::size_t k = 0; k < items.size(); ++k)
     if (!seen.insert(items[k].name).second)
-      faults.push_back({at_index(list, k, "/name"), "the name \"" + items[k].name + "\" is used twice: choose another"});
+      faults.push_back(
+          {at_index(list, k, "/name"), "the name \"" + items[k].name + "\" is used twice: choose another"});
 }
 
 void check_soil(const std::string& name, const Soil& soil, Faults& faults) {
   const SoilModel& model = soil.model;
   if (soil.max_porosity && *soil.max_porosity <= soil.porosity)
-    faults.push_back({at_soil(name, "/max_porosity"), text(*soil.max_porosity) + " is not above the porosity " +
-                                                          text(soil.porosity) + ": the grains would never touch"});
+    faults.push_back(
+        {at_soil(name, "/max_porosity"), text(*soil.max_porosity) + " is not above the porosity " +
+                                             text(soil.porosity) + ": the grains would never touch"});
   if (model.law != SoilLaw::mohr_coulomb) return;
   if (model.dilation_angle > model.friction_angle)
     faults.push_back({at_soil(name, "/model/dilation_angle"),
-                      text(model.dilation_angle) + "° is above the friction angle " + text(model.friction_angle) +
+                      text(model.dilation_angle) + "° is above the friction angle " +
+                          text(model.friction_angle) +
                           "°: the soil would create energy; give at most the friction angle"});
   if (model.friction_angle == 0 && model.cohesion == 0)
     faults.push_back({at_soil(name, "/model/friction_angle"),
@@ -39,7 +42,8 @@ void check_soil_uses(const Scene& scene, Faults& faults) {
     if (body.kind == BodyKind::water) continue;
     used.insert(body.soil);
     if (!scene.soils.contains(body.soil))
-      faults.push_back({at_index("bodies", k, "/soil"), "there is no soil \"" + body.soil + "\" in materials.soils"});
+      faults.push_back(
+          {at_index("bodies", k, "/soil"), "there is no soil \"" + body.soil + "\" in materials.soils"});
   }
   for (const auto& [name, soil] : scene.soils)
     if (!used.contains(name))

@@ -9,9 +9,9 @@ namespace {
 
 using Point = std::array<double, 2>;
 
-/// Calls f(x) for every edge that the line at height y crosses, in the frame turned so that the line runs along
-/// `axis`. An edge holds its lower end and not its upper one, and is evaluated from the lower end whichever way
-/// round it is given, so that two polygons with a common edge agree on it to the last bit.
+/// Calls f(x) for every edge that the line at height y crosses, in the frame turned so that the line runs
+/// along `axis`. An edge holds its lower end and not its upper one, and is evaluated from the lower end
+/// whichever way round it is given, so that two polygons with a common edge agree on it to the last bit.
 template <typename F>
 void for_crossings(const std::vector<Point>& vertices, std::size_t axis, double at, const F& f) {
   const std::size_t other = 1 - axis;
@@ -71,8 +71,10 @@ Stretches joined(Stretches loose) {
   std::sort(loose.begin(), loose.end());
   Stretches all;
   for (const auto& s : loose)
-    if (!all.empty() && s[0] <= all.back()[1]) all.back()[1] = std::max(all.back()[1], s[1]);
-    else all.push_back(s);
+    if (!all.empty() && s[0] <= all.back()[1])
+      all.back()[1] = std::max(all.back()[1], s[1]);
+    else
+      all.push_back(s);
   return all;
 }
 
@@ -164,7 +166,8 @@ Stretches stretches(const Region& region, int line_axis, double at) {
   const std::size_t other = 1 - axis;
   switch (region.kind) {
     case Region::Kind::box:
-      if (at < region.min[other] || at >= region.max[other] || region.min[axis] >= region.max[axis]) return {};
+      if (at < region.min[other] || at >= region.max[other] || region.min[axis] >= region.max[axis])
+        return {};
       return {{region.min[axis], region.max[axis]}};
     case Region::Kind::polygon:
       return polygon_stretches(region.vertices, axis, at);

@@ -22,11 +22,12 @@ Bounds bounding_box(const Region& region);
 /// Sorted, disjoint intervals [from, to) of a line.
 using Stretches = std::vector<std::array<double, 2>>;
 
-/// The part of a line inside a region of the plane. `axis` 0: the line y = `at`, stretches in x; `axis` 1: the
-/// line x = `at`, stretches in y. For axis 0, x lies in a stretch exactly when contains(region, {x, at}).
+/// The part of a line inside a region of the plane. `axis` 0: the line y = `at`, stretches in x; `axis` 1:
+/// the line x = `at`, stretches in y. For axis 0, x lies in a stretch exactly when contains(region, {x, at}).
 Stretches stretches(const Region& region, int axis, double at);
 
-/// Area of a region of the plane in m², by lines `spacing` metres apart (relative error of order spacing/size).
+/// Area of a region of the plane in m², by lines `spacing` metres apart (relative error of order
+/// spacing/size).
 double area(const Region& region, double spacing);
 
 /// Number of edges to look at: 4 for a box or a disc, vertices of a polygon, sum of the parts.

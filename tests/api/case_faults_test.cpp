@@ -17,7 +17,9 @@ struct Mutation {
   std::vector<std::string> expected;
 };
 
-std::string patched(const char* patch) { return json::parse(test::heave_case()).patch(json::parse(patch)).dump(); }
+std::string patched(const char* patch) {
+  return json::parse(test::heave_case()).patch(json::parse(patch)).dump();
+}
 
 class CaseFaults : public testing::TestWithParam<Mutation> {};
 
@@ -39,7 +41,9 @@ const Mutation of_the_format[] = {
     {"NoVersion", REMOVE("/schema"), {"/schema"}},
     {"NoName", REMOVE("/name"), {"/name"}},
     {"UnknownTopKey", ADD("/walls_", "[]"), {"/walls_"}},
-    {"UnknownNestedKey", ADD("/materials/soils/sand/permeability/valeu", "1"), {"/materials/soils/sand/permeability/valeu"}},
+    {"UnknownNestedKey",
+     ADD("/materials/soils/sand/permeability/valeu", "1"),
+     {"/materials/soils/sand/permeability/valeu"}},
     {"MisspeltNeededKey", R"([{"op":"move","from":"/gates","path":"/gate"}])", {"/gate"}},
     {"WrongType", ADD("/domain/cell_size", R"("small")"), {"/domain/cell_size"}},
     {"NullWhereNumber", ADD("/domain/cell_size", "null"), {"/domain/cell_size"}},
@@ -47,11 +51,15 @@ const Mutation of_the_format[] = {
     {"NegativeCell", ADD("/domain/cell_size", "-0.01"), {"/domain/cell_size"}},
     {"PorosityAboveOne", ADD("/materials/soils/sand/porosity", "1.4"), {"/materials/soils/sand/porosity"}},
     {"PorosityOfOne", ADD("/materials/soils/sand/porosity", "1"), {"/materials/soils/sand/porosity"}},
-    {"PoissonOfHalf", ADD("/materials/soils/sand/model/poisson_ratio", "0.5"), {"/materials/soils/sand/model/poisson_ratio"}},
+    {"PoissonOfHalf",
+     ADD("/materials/soils/sand/model/poisson_ratio", "0.5"),
+     {"/materials/soils/sand/model/poisson_ratio"}},
     {"FractionOfPoint", ADD("/numerics/points_per_cell", "2.5"), {"/numerics/points_per_cell"}},
     {"UnknownChoice", ADD("/numerics/preset", R"("coarse")"), {"/numerics/preset"}},
     {"UnknownLaw", ADD("/materials/soils/sand/model/law", R"("mohr")"), {"/materials/soils/sand/model/law"}},
-    {"WaterStiffnessAsWord", ADD("/materials/water/bulk_modulus", R"("stiff")"), {"/materials/water/bulk_modulus"}},
+    {"WaterStiffnessAsWord",
+     ADD("/materials/water/bulk_modulus", R"("stiff")"),
+     {"/materials/water/bulk_modulus"}},
     {"WaterStiffnessZero", ADD("/materials/water/bulk_modulus", "0"), {"/materials/water/bulk_modulus"}},
     {"NoStage", ADD("/stages", "[]"), {"/stages"}},
     {"ZeroDuration", ADD("/stages/1/duration", "0"), {"/stages/1/duration"}},
@@ -61,9 +69,13 @@ const Mutation of_the_format[] = {
     {"TwoCorners", ADD("/bodies/3/region/polygon", "[[0,0],[1,0]]"), {"/bodies/3/region/polygon"}},
     {"BadCorner", SET("/bodies/3/region/polygon/1/0", R"("x")"), {"/bodies/3/region/polygon/1/0"}},
     {"DifferenceOfOne", REMOVE("/bodies/1/region/difference/1"), {"/bodies/1/region/difference"}},
-    {"RadiusMissing", ADD("/bodies/4/region", R"({"disc":{"center":[0.4,0.3]}})"), {"/bodies/4/region/disc/radius"}},
+    {"RadiusMissing",
+     ADD("/bodies/4/region", R"({"disc":{"center":[0.4,0.3]}})"),
+     {"/bodies/4/region/disc/radius"}},
     {"SlashInName", ADD("/gates/0/name", R"("a/b")"), {"/gates/0/name"}},
-    {"SlashInSoilName", ADD("/materials/soils/a~1b", R"({"permeability":{"value":1e-4},"model":{"law":"linear_elastic","young_modulus":1e6,"poisson_ratio":0.3}})"),
+    {"SlashInSoilName",
+     ADD("/materials/soils/a~1b",
+         R"({"permeability":{"value":1e-4},"model":{"law":"linear_elastic","young_modulus":1e6,"poisson_ratio":0.3}})"),
      {"/materials/soils/a~1b"}},
     {"ThreeNumbersInThePlane", ADD("/gravity", "[0,-9.81,0]"), {"/gravity"}},
     {"OneNumber", ADD("/domain/max", "[0.6]"), {"/domain/max"}},
@@ -74,19 +86,30 @@ const Mutation of_the_format[] = {
 const Mutation of_keys_without_effect[] = {
     {"HeadOfClosedSide", ADD("/domain/sides/bottom/head", "1"), {"/domain/sides/bottom/head"}},
     {"FrontInThePlane", ADD("/domain/sides/front", R"({"kind":"slip"})"), {"/domain/sides/front"}},
-    {"GrainSizeWithoutErgun", ADD("/materials/soils/sand/permeability/grain_size", "1e-3"), {"/materials/soils/sand/permeability/grain_size"}},
-    {"FrictionOfElasticSoil", ADD("/materials/soils/plate/model/friction_angle", "0"), {"/materials/soils/plate/model/friction_angle"}},
-    {"FrictionMissing", REMOVE("/materials/soils/sand/model/friction_angle"), {"/materials/soils/sand/model/friction_angle"}},
-    {"PermeabilityMissing", REMOVE("/materials/soils/sand/permeability"), {"/materials/soils/sand/permeability"}},
+    {"GrainSizeWithoutErgun",
+     ADD("/materials/soils/sand/permeability/grain_size", "1e-3"),
+     {"/materials/soils/sand/permeability/grain_size"}},
+    {"FrictionOfElasticSoil",
+     ADD("/materials/soils/plate/model/friction_angle", "0"),
+     {"/materials/soils/plate/model/friction_angle"}},
+    {"FrictionMissing",
+     REMOVE("/materials/soils/sand/model/friction_angle"),
+     {"/materials/soils/sand/model/friction_angle"}},
+    {"PermeabilityMissing",
+     REMOVE("/materials/soils/sand/permeability"),
+     {"/materials/soils/sand/permeability"}},
     {"SoilOfWater", ADD("/bodies/0/soil", R"("sand")"), {"/bodies/0/soil"}},
     {"SoilMissing", REMOVE("/bodies/3/soil"), {"/bodies/3/soil"}},
     {"VelocityOfFixed", ADD("/bodies/2/velocity", "[0,1]"), {"/bodies/2/velocity"}},
     {"K0WithoutK0", ADD("/initial/stress", R"("zero")"), {"/initial/k0"}},
     {"UniformPressureMissing", ADD("/initial/pressure", R"("uniform")"), {"/initial/uniform_pressure"}},
     {"PlateKeysOfTraction", ADD("/loads/0/rough", "true"), {"/loads/0/rough"}},
-    {"FactorOfFixedStep", R"([{"op":"add","path":"/numerics/time_step","value":1e-4},{"op":"add","path":"/numerics/time_step_factor","value":0.5}])",
+    {"FactorOfFixedStep",
+     R"([{"op":"add","path":"/numerics/time_step","value":1e-4},{"op":"add","path":"/numerics/time_step_factor","value":0.5}])",
      {"/numerics/time_step_factor"}},
-    {"UnusedSoil", ADD("/materials/soils/clay", R"({"permeability":{"value":1e-9},"model":{"law":"linear_elastic","young_modulus":1e6,"poisson_ratio":0.3}})"),
+    {"UnusedSoil",
+     ADD("/materials/soils/clay",
+         R"({"permeability":{"value":1e-9},"model":{"law":"linear_elastic","young_modulus":1e6,"poisson_ratio":0.3}})"),
      {"/materials/soils/clay"}},
     {"UnusedGate", ADD("/stages/1/open_gates", "[]"), {"/gates/0"}},
     {"GateAlwaysOpen", ADD("/stages/0/open_gates", R"(["valve"])"), {"/gates/0"}},
@@ -114,54 +137,86 @@ const Mutation of_geometry[] = {
     {"DomainNotWholeCells", SET("/domain/max/0", "0.61"), {"/domain/max"}},
     {"TooManyCells", ADD("/domain/cell_size", "1e-5"), {"/domain/cell_size"}},
     {"WallOffFaces", ADD("/walls/1/line/from", "[0.43,0.4]"), {"/walls/1/line", "/walls/1/line/from"}},
-    {"WallOffFacesOfDraft", R"([{"op":"replace","path":"/walls/1/line/from/0","value":0.45},{"op":"replace","path":"/walls/1/line/to/0","value":0.45}])",
+    {"WallOffFacesOfDraft",
+     R"([{"op":"replace","path":"/walls/1/line/from/0","value":0.45},{"op":"replace","path":"/walls/1/line/to/0","value":0.45}])",
      {"/walls/1/line/from", "/walls/1/line/to"}},
     {"WallOutside", SET("/walls/1/line/to/1", "0.8"), {"/walls/1/line/to"}},
     {"WallSlanted", SET("/walls/1/line/to/0", "0.48"), {"/walls/1/line"}},
     {"WallOfNoLength", ADD("/walls/1/line/to", "[0.44,0.4]"), {"/walls/1/line"}},
     {"WallOnEdge", ADD("/walls/1/line", R"({"from":[0.6,0.4],"to":[0.6,0.5]})"), {"/walls/1/line"}},
     {"WallOfNothing", REMOVE("/walls/1/line"), {"/walls/1"}},
-    {"BlockNotBox", SET("/walls/1", R"({"name":"pile","block":{"disc":{"center":[0.4,0.5],"radius":0.04}}})"), {"/walls/1/block"}},
+    {"BlockNotBox",
+     SET("/walls/1", R"({"name":"pile","block":{"disc":{"center":[0.4,0.5],"radius":0.04}}})"),
+     {"/walls/1/block"}},
     {"BlockOffFaces", SET("/walls/0/block/box/max/0", "0.295"), {"/walls/0/block/box/max"}},
-    {"GateOnWall", ADD("/walls/-", R"({"name":"plug","line":{"from":[0.24,0.04],"to":[0.24,0.08]}})"), {"/gates/0/line"}},
+    {"GateOnWall",
+     ADD("/walls/-", R"({"name":"plug","line":{"from":[0.24,0.04],"to":[0.24,0.08]}})"),
+     {"/gates/0/line"}},
     {"GateInBlock", ADD("/gates/0/line", R"({"from":[0.24,0.2],"to":[0.24,0.3]})"), {"/gates/0/line"}},
     {"BodyOutside", SET("/bodies/4/region/box/max/0", "0.7"), {"/bodies/4/region"}},
     {"BodyTurned", SET("/bodies/4/region/box/max/1", "0.2"), {"/bodies/4/region/box"}},
-    {"BodyTooThin", ADD("/bodies/4/region/box", R"({"min":[0.4,0.4],"max":[0.5,0.404]})"), {"/bodies/4/region"}},
+    {"BodyTooThin",
+     ADD("/bodies/4/region/box", R"({"min":[0.4,0.4],"max":[0.5,0.404]})"),
+     {"/bodies/4/region"}},
     {"BodiesOverlap", SET("/bodies/4/region/box/min/1", "0.23"), {"/bodies/4/region"}},
-    {"BodyInBlock", ADD("/bodies/4/region/box", R"({"min":[0.22,0.4],"max":[0.28,0.5]})"), {"/bodies/4/region"}},
+    {"BodyInBlock",
+     ADD("/bodies/4/region/box", R"({"min":[0.22,0.4],"max":[0.28,0.5]})"),
+     {"/bodies/4/region"}},
     {"BodyIntoBlock", SET("/bodies/4/region/box/min/0", "0.28"), {"/bodies/4/region"}},
-    {"PolygonCrossed", ADD("/bodies/3/region/polygon", "[[0.3,0.12],[0.6,0.24],[0.6,0.12],[0.3,0.24]]"), {"/bodies/3/region/polygon"}},
+    {"PolygonCrossed",
+     ADD("/bodies/3/region/polygon", "[[0.3,0.12],[0.6,0.24],[0.6,0.12],[0.3,0.24]]"),
+     {"/bodies/3/region/polygon"}},
     {"FixedBodyOffFaces", SET("/bodies/2/region/box/max/1", "0.115"), {"/bodies/2/region"}},
     {"ProbeOutside", ADD("/output/probes/0/at", "[0.45,-0.1]"), {"/output/probes/0/at"}},
 };
 
 const Mutation of_sense[] = {
-    {"DilationAboveFriction", ADD("/materials/soils/sand/model/dilation_angle", "35"), {"/materials/soils/sand/model/dilation_angle"}},
-    {"NoStrength", R"([{"op":"add","path":"/materials/soils/sand/model/friction_angle","value":0},{"op":"add","path":"/materials/soils/sand/model/dilation_angle","value":0}])",
+    {"DilationAboveFriction",
+     ADD("/materials/soils/sand/model/dilation_angle", "35"),
+     {"/materials/soils/sand/model/dilation_angle"}},
+    {"NoStrength",
+     R"([{"op":"add","path":"/materials/soils/sand/model/friction_angle","value":0},{"op":"add","path":"/materials/soils/sand/model/dilation_angle","value":0}])",
      {"/materials/soils/sand/model/friction_angle"}},
-    {"MaxPorosityBelowPorosity", ADD("/materials/soils/sand/max_porosity", "0.3"), {"/materials/soils/sand/max_porosity"}},
+    {"MaxPorosityBelowPorosity",
+     ADD("/materials/soils/sand/max_porosity", "0.3"),
+     {"/materials/soils/sand/max_porosity"}},
     {"RestAfterTheEnd", ADD("/stages/0/until_rest/at_least", "0.5"), {"/stages/0/until_rest/at_least"}},
     {"TooManyFrames", ADD("/output/frame_interval", "1e-5"), {"/output/frame_interval"}},
     {"TooManySamples", ADD("/output/series_interval", "1e-7"), {"/output/series_interval"}},
-    {"HeadWithoutGravity", R"([{"op":"add","path":"/gravity","value":[0,0]},{"op":"remove","path":"/output/heave"},{"op":"remove","path":"/initial/k0"}])",
+    {"HeadWithoutGravity",
+     R"([{"op":"add","path":"/gravity","value":[0,0]},{"op":"remove","path":"/output/heave"},{"op":"remove","path":"/initial/k0"}])",
      {"/output/probes/0/quantity", "/output/probes/1/quantity"}},
 };
 
 const Mutation not_supported_yet[] = {
     {"Axisymmetric", ADD("/domain/dimension", R"("axisymmetric")"), {"/domain/dimension"}},
     {"OpenSide", ADD("/domain/sides/top", R"({"kind":"open"})"), {"/domain/sides/top/kind"}},
-    {"ReservoirSide", ADD("/domain/sides/left", R"({"kind":"reservoir","head":0.5})"), {"/domain/sides/left/kind"}},
-    {"Ergun", ADD("/materials/soils/sand/permeability", R"({"law":"ergun","grain_size":5e-4})"), {"/materials/soils/sand/permeability/law"}},
-    {"CamClay", ADD("/materials/soils/plate/model/law", R"("modified_cam_clay")"), {"/materials/soils/plate/model/law"}},
-    {"TensionCutoff", ADD("/materials/soils/sand/model/tension_cutoff", "100"), {"/materials/soils/sand/model/tension_cutoff"}},
+    {"ReservoirSide",
+     ADD("/domain/sides/left", R"({"kind":"reservoir","head":0.5})"),
+     {"/domain/sides/left/kind"}},
+    {"Ergun",
+     ADD("/materials/soils/sand/permeability", R"({"law":"ergun","grain_size":5e-4})"),
+     {"/materials/soils/sand/permeability/law"}},
+    {"CamClay",
+     ADD("/materials/soils/plate/model/law", R"("modified_cam_clay")"),
+     {"/materials/soils/plate/model/law"}},
+    {"TensionCutoff",
+     ADD("/materials/soils/sand/model/tension_cutoff", "100"),
+     {"/materials/soils/sand/model/tension_cutoff"}},
     {"LinearKernel", ADD("/numerics/kernel", R"("linear")"), {"/numerics/kernel"}},
     {"Apic", ADD("/numerics/transfer", R"("apic")"), {"/numerics/transfer"}},
     {"QuasiStatic", ADD("/stages/0/quasi_static", "true"), {"/stages/0/quasi_static"}},
     {"RemoveBodies", ADD("/stages/1/remove_bodies", R"(["pond"])"), {"/stages/1/remove_bodies"}},
-    {"Reservoir", ADD("/reservoirs", R"([{"name":"lake","line":{"from":[0,0],"to":[0,0.2]},"head":0.5}])"), {"/reservoirs"}},
-    {"Section", ADD("/output/sections", R"([{"name":"cut","line":{"from":[0.3,0.12],"to":[0.6,0.12]},"quantity":"flow"}])"), {"/output/sections"}},
-    {"Plate", SET("/loads/0", R"({"name":"cover","kind":"plate","body":"sand","plate":{"from":[0.3,0.24],"to":[0.6,0.24]},"plate_velocity":[0,-1]})"),
+    {"Reservoir",
+     ADD("/reservoirs", R"([{"name":"lake","line":{"from":[0,0],"to":[0,0.2]},"head":0.5}])"),
+     {"/reservoirs"}},
+    {"Section",
+     ADD("/output/sections",
+         R"([{"name":"cut","line":{"from":[0.3,0.12],"to":[0.6,0.12]},"quantity":"flow"}])"),
+     {"/output/sections"}},
+    {"Plate",
+     SET("/loads/0",
+         R"({"name":"cover","kind":"plate","body":"sand","plate":{"from":[0.3,0.24],"to":[0.6,0.24]},"plate_velocity":[0,-1]})"),
      {"/loads/0/kind"}},
 };
 
@@ -184,9 +239,15 @@ TEST(CaseFaultsTogether, FaultsOfAllKindsComeInOneAnswer) {
     {"op":"add","path":"/numerics/kernel","value":"linear"}])");
   text.insert(text.size() - 1, R"(,"name":"again")");  // a duplicate key
   const ParsedCase parsed = parse_case(text);
-  const std::vector<std::string> expected{"/bodies/4/region", "/colour", "/domain/sides/bottom/head",
-                                          "/materials/soils/sand/porosity", "/name", "/numerics/kernel",
-                                          "/stages/1/open_gates/1", "/walls/1/line", "/walls/1/line/to"};
+  const std::vector<std::string> expected{"/bodies/4/region",
+                                          "/colour",
+                                          "/domain/sides/bottom/head",
+                                          "/materials/soils/sand/porosity",
+                                          "/name",
+                                          "/numerics/kernel",
+                                          "/stages/1/open_gates/1",
+                                          "/walls/1/line",
+                                          "/walls/1/line/to"};
   EXPECT_EQ(test::pointers(parsed.faults), expected) << test::said(parsed.faults);
 }
 
@@ -194,7 +255,8 @@ TEST(CaseFaultsTogether, ConsequencesOfABrokenPartStayUnsaid) {
   // Without the gates nothing can be said about the gates that stages open; the stage's own fault stays.
   const ParsedCase parsed = parse_case(patched(R"([
     {"op":"add","path":"/gates","value":{}}, {"op":"add","path":"/stages/0/until_rest/at_least","value":9}])"));
-  EXPECT_EQ(test::pointers(parsed.faults), (std::vector<std::string>{"/gates", "/stages/0/until_rest/at_least"}))
+  EXPECT_EQ(test::pointers(parsed.faults),
+            (std::vector<std::string>{"/gates", "/stages/0/until_rest/at_least"}))
       << test::said(parsed.faults);
 }
 
@@ -205,7 +267,9 @@ TEST(CaseFaultWords, SayValueRangeAndNearestKey) {
   const std::string unknown = detail(ADD("/materials/soils/sand/porositi", "0.4"));
   EXPECT_NE(unknown.find("did you mean \"porosity\"?"), std::string::npos) << unknown;
   const std::string corner = detail(ADD("/walls/1/line/to", "[0.44,0.513]"));
-  EXPECT_NE(corner.find("cells of 0.02 m (cell_size 0.01 × cell_size_factor 2): the nearest is (0.44, 0.52)"), std::string::npos) << corner;
+  EXPECT_NE(corner.find("cells of 0.02 m (cell_size 0.01 × cell_size_factor 2): the nearest is (0.44, 0.52)"),
+            std::string::npos)
+      << corner;
   const std::string later = detail(ADD("/numerics/kernel", R"("linear")"));
   EXPECT_NE(later.find("is not supported yet"), std::string::npos) << later;
 }

@@ -16,8 +16,8 @@ TEST(JsonText, SyntaxFaultHasLineColumnAndPlace) {
 }
 
 TEST(JsonText, RefusesWhatIsNotOneJsonText) {
-  for (const char* text : {"", " ", "{", "[1,]", "{\"a\":1} x", "nul", "{'a':1}", "{\"a\" 1}", "[1 2]", "// c\n{}", "1e400", "NaN",
-                           "\"\xff\"", "[\"\\u0000\"]", "{\"\\u0000\":1}"}) {
+  for (const char* text : {"", " ", "{", "[1,]", "{\"a\":1} x", "nul", "{'a':1}", "{\"a\" 1}", "[1 2]",
+                           "// c\n{}", "1e400", "NaN", "\"\xff\"", "[\"\\u0000\"]", "{\"\\u0000\":1}"}) {
     const JsonText json = read_json(text);
     EXPECT_FALSE(json.complete) << text;
     EXPECT_EQ(json.faults.size(), 1u) << text;
@@ -38,7 +38,8 @@ TEST(JsonText, DepthIsCapped) {
   for (const std::string& bomb : {std::string(100'000, '['), nested(100'000)}) {
     const ParsedCase parsed = parse_case(bomb);
     ASSERT_EQ(parsed.faults.size(), 1u);
-    EXPECT_NE(parsed.faults[0].detail.find("nested deeper than 64"), std::string::npos) << parsed.faults[0].detail;
+    EXPECT_NE(parsed.faults[0].detail.find("nested deeper than 64"), std::string::npos)
+        << parsed.faults[0].detail;
   }
   std::string objects;
   for (int k = 0; k < 100'000; ++k) objects += "{\"union\":";

@@ -15,7 +15,9 @@ Scene sound(const std::string& text, const std::optional<Preset>& preset = {}) {
   return parsed.scene.value_or(Scene{});
 }
 
-std::string patched(const char* patch) { return json::parse(test::heave_case()).patch(json::parse(patch)).dump(); }
+std::string patched(const char* patch) {
+  return json::parse(test::heave_case()).patch(json::parse(patch)).dump();
+}
 
 TEST(RoundTrip, ResolvedCaseIsAFixedPoint) {
   const char* variants[] = {

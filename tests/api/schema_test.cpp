@@ -21,11 +21,13 @@ const json& schema() {
 }
 
 const json& resolved(const json& node) {
-  return node.contains("$ref") ? schema().at(json::json_pointer(node["$ref"].get<std::string>().substr(1))) : node;
+  return node.contains("$ref") ? schema().at(json::json_pointer(node["$ref"].get<std::string>().substr(1)))
+                               : node;
 }
 
 /// Calls f(node, where) for every schema node of the document.
-void walk(const json& node, const std::string& where, const std::function<void(const json&, const std::string&)>& f) {
+void walk(const json& node, const std::string& where,
+          const std::function<void(const json&, const std::string&)>& f) {
   if (!node.is_object()) return;  // additionalProperties: false
   f(node, where);
   for (const char* key : {"properties", "definitions"})
@@ -40,16 +42,19 @@ void walk(const json& node, const std::string& where, const std::function<void(c
 bool number_like(const json& node) {
   if (!node.contains("type")) return false;
   const json types = node["type"].is_array() ? node["type"] : json::array({node["type"]});
-  return std::any_of(types.begin(), types.end(), [](const json& t) { return t == "number" || t == "integer"; });
+  return std::any_of(types.begin(), types.end(),
+                     [](const json& t) { return t == "number" || t == "integer"; });
 }
 
 /// Whether a keyword of draft-07 (of those in use, and x-unit) has a value of the right form.
 bool well_formed(const std::string& key, const json& value) {
   static const std::set<std::string> texts{"$schema", "$ref", "title", "description", "pattern", "x-unit"};
   static const std::set<std::string> numbers{"minimum", "maximum", "exclusiveMinimum", "exclusiveMaximum"};
-  static const std::set<std::string> counts{"minLength", "maxLength", "minItems", "maxItems", "minProperties", "maxProperties"};
+  static const std::set<std::string> counts{"minLength", "maxLength",     "minItems",
+                                            "maxItems",  "minProperties", "maxProperties"};
   static const std::set<std::string> nodes{"properties", "definitions", "items", "propertyNames"};
-  static const std::set<std::string> types{"null", "boolean", "object", "array", "number", "string", "integer"};
+  static const std::set<std::string> types{"null",   "boolean", "object", "array",
+                                           "number", "string",  "integer"};
   if (texts.contains(key)) return value.is_string();
   if (numbers.contains(key)) return value.is_number();
   if (counts.contains(key)) return value.is_number_unsigned();
@@ -59,7 +64,8 @@ bool well_formed(const std::string& key, const json& value) {
   if (key == "enum" || key == "anyOf") return value.is_array() && !value.empty();
   if (key == "type") {
     const json all = value.is_array() ? value : json::array({value});
-    return std::all_of(all.begin(), all.end(), [](const json& t) { return types.contains(t.get<std::string>()); });
+    return std::all_of(all.begin(), all.end(),
+                       [](const json& t) { return types.contains(t.get<std::string>()); });
   }
   return key == "const" || key == "default";
 }
@@ -67,12 +73,14 @@ bool well_formed(const std::string& key, const json& value) {
 TEST(Schema, IsDraft07InStructure) {
   EXPECT_EQ(schema()["$schema"], "http://json-schema.org/draft-07/schema#");
   walk(schema(), "", [&](const json& node, const std::string& where) {
-    for (const auto& item : node.items()) EXPECT_TRUE(well_formed(item.key(), item.value())) << where << " " << item.key();
+    for (const auto& item : node.items())
+      EXPECT_TRUE(well_formed(item.key(), item.value())) << where << " " << item.key();
     if (node.contains("$ref")) {
       EXPECT_NO_THROW(resolved(node)) << where;
     }
     if (!node.contains("required")) return;
-    for (const json& key : node["required"]) EXPECT_TRUE(node["properties"].contains(key.get<std::string>())) << where << key;
+    for (const json& key : node["required"])
+      EXPECT_TRUE(node["properties"].contains(key.get<std::string>())) << where << key;
   });
 }
 
@@ -88,7 +96,9 @@ TEST(Schema, DescribesEveryKeyWithUnitAndRange) {
       EXPECT_GE(key.value("description", "").size(), 8u) << place;
       const json& meant = resolved(key);
       const bool vector = meant.contains("items") && number_like(resolved(meant["items"]));
-      EXPECT_EQ(number_like(meant) || vector, key.contains("x-unit") && !meant.contains("anyOf") && item.key() != "polygon") << place;
+      EXPECT_EQ(number_like(meant) || vector,
+                key.contains("x-unit") && !meant.contains("anyOf") && item.key() != "polygon")
+          << place;
     }
   });
   EXPECT_GT(keys, 120u);
@@ -105,7 +115,9 @@ TEST(Schema, DescribesEveryKeyWithUnitAndRange) {
 
 TEST(Schema, DefaultsAreAllowedValuesAndThoseOfTheScene) {
   const json& d = schema()["definitions"];
-  const auto default_of = [&](const char* object, const char* key) { return d[object]["properties"][key]["default"]; };
+  const auto default_of = [&](const char* object, const char* key) {
+    return d[object]["properties"][key]["default"];
+  };
   EXPECT_EQ(default_of("soil", "grain_density"), Soil{}.grain_density);
   EXPECT_EQ(default_of("soil", "porosity"), Soil{}.porosity);
   EXPECT_EQ(default_of("permeability", "law"), word_of(Permeability{}.law));
@@ -151,9 +163,10 @@ TEST(Schema, OffersTheWordsThatAreRead) {
 TEST(OpenApi, IsCompiledInWhole) {
   const std::string& text = openapi_document();
   EXPECT_EQ(text.rfind("openapi: 3.1", 0), 0u);
-  for (const char* path : {"/v1/runs:", "/v1/validate:", "/v1/runs/{id}:", "/v1/runs/{id}/case:", "/v1/runs/{id}/results:",
-                           "/v1/runs/{id}/results/{file}:", "/v1/runs/{id}/cancel:", "/v1/cases:", "/v1/schemas/case:",
-                           "/v1/openapi.yaml:", "/v1/service-info:", "/healthz:", "/readyz:"})
+  for (const char* path :
+       {"/v1/runs:", "/v1/validate:", "/v1/runs/{id}:", "/v1/runs/{id}/case:", "/v1/runs/{id}/results:",
+        "/v1/runs/{id}/results/{file}:", "/v1/runs/{id}/cancel:", "/v1/cases:", "/v1/schemas/case:",
+        "/v1/openapi.yaml:", "/v1/service-info:", "/healthz:", "/readyz:"})
     EXPECT_NE(text.find(std::string("\n  ") + path + "\n"), std::string::npos) << path;
   EXPECT_EQ(text.back(), '\n');
 }

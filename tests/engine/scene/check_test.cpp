@@ -60,8 +60,8 @@ TEST(Check, ScalesDoNotMatter) {
 TEST(Check, OriginsThatAreNotRoundDoNotMatter) {
   Scene s = basin();
   const Vec3 shift{-123.456789, 0.1234567, 0};
-  for (Vec3* v : {&s.domain.min, &s.domain.max, &s.bodies[0].region.min, &s.bodies[0].region.max, &s.bodies[1].region.min,
-                  &s.bodies[1].region.max})
+  for (Vec3* v : {&s.domain.min, &s.domain.max, &s.bodies[0].region.min, &s.bodies[0].region.max,
+                  &s.bodies[1].region.min, &s.bodies[1].region.max})
     for (std::size_t k = 0; k < 3; ++k) (*v)[k] += shift[k];
   s.bodies[0].fixed = true;
   EXPECT_EQ(faults_of(s), Pointers{});
@@ -84,7 +84,8 @@ TEST(Check, PresetsDecideWhichFacesThereAre) {
   };
   EXPECT_EQ(with_factor(1), Pointers{});
   EXPECT_EQ(with_factor(0.5), Pointers{});
-  EXPECT_EQ(with_factor(2), (Pointers{"/walls/0/line/from", "/walls/0/line/to"}));  // 0.5 and 0.7 lie within cells
+  EXPECT_EQ(with_factor(2),
+            (Pointers{"/walls/0/line/from", "/walls/0/line/to"}));  // 0.5 and 0.7 lie within cells
 }
 
 TEST(Check, OverlapsAreFoundPointByPoint) {
@@ -103,7 +104,8 @@ TEST(Check, OverlapsAreFoundPointByPoint) {
 
 TEST(Check, ThreeBodiesInOnePlaceAreAllNamed) {
   EXPECT_EQ(after([](Scene& s) {
-              for (const char* name : {"a", "b"}) s.bodies.push_back({name, BodyKind::water, "", box(0.2, 0.4, 0.4, 0.5), false, {}});
+              for (const char* name : {"a", "b"})
+                s.bodies.push_back({name, BodyKind::water, "", box(0.2, 0.4, 0.4, 0.5), false, {}});
             }),
             (Pointers{"/bodies/2/region", "/bodies/3/region"}));
 }
@@ -144,8 +146,8 @@ TEST(Check, ReservoirsAndSectionsLieOnTheirLines) {
     s.output.sections = {{"cut", {{0.5, 0, 0}, {0.5, 0.43, 0}}, "flow"}};
     s.stages[0].heads = {{"sea", 1}};
   });
-  EXPECT_EQ(pointers, (Pointers{"/output/sections", "/output/sections/0/line/to", "/reservoirs", "/reservoirs/0/line",
-                                "/stages/0/heads", "/stages/0/heads/sea"}));
+  EXPECT_EQ(pointers, (Pointers{"/output/sections", "/output/sections/0/line/to", "/reservoirs",
+                                "/reservoirs/0/line", "/stages/0/heads", "/stages/0/heads/sea"}));
 }
 
 TEST(Check, SpaceIsRefusedOnce) {

@@ -74,7 +74,8 @@ TEST(Region, UnionAndDifference) {
 }
 
 TEST(Region, StretchesAgreeWithContains) {
-  for (const Region& r : {box(0.3, 0.2, 2, 3), star, disc(2, 2, 1.5), pair, frame, combined(Region::Kind::union_of, {frame, star})})
+  for (const Region& r : {box(0.3, 0.2, 2, 3), star, disc(2, 2, 1.5), pair, frame,
+                          combined(Region::Kind::union_of, {frame, star})})
     for (double y = -0.5; y < 4.5; y += 0.097) {
       const Stretches along_x = stretches(r, 0, y), along_y = stretches(r, 1, y);
       for (double x = -0.5; x < 4.5; x += 0.0931) {
