@@ -46,6 +46,7 @@ Json to_json(const Ledger& l) {
           {"momentum_change", l.momentum_change},
           {"impulse_gravity", l.impulse_gravity},
           {"impulse_walls", l.impulse_walls},
+          {"impulse_surface", l.impulse_surface},
           {"impulse_loads", l.impulse_loads},
           {"momentum_residual", l.momentum_residual},
           {"energy_kinetic", l.energy_kinetic},

@@ -53,13 +53,19 @@ double coupled_step_limit(const SaturatedSoil& soil, double h) {
   return bound;
 }
 
+double surface_step_limit(const SaturatedSoil& soil, double h) {
+  const double mass = (1 - soil.porosity) * soil.grain_density;
+  const double wave = soil.constrained_modulus / (mass * h * h), drag = soil.drag / mass;  // 1/s², 1/s
+  return (drag + std::sqrt(drag * drag + 16 * wave)) / (4 * wave);
+}
+
 StepLimit::StepLimit(const SoilMaterial& soil, double water_density, double water_compliance, double h) {
   for (int i = 0; i < kEntries; ++i) {
     const double n = (i + 0.5) / kEntries;
     const SaturatedSoil s{soil.elastic.constrained(), soil.grain_density,      water_density,
                           water_compliance,           n, soil.drag.resistance(n)};
     dry_[i] = dry_step_limit(s, h);
-    saturated_[i] = coupled_step_limit(s, h);
+    saturated_[i] = std::min(coupled_step_limit(s, h), surface_step_limit(s, h));
   }
 }
 

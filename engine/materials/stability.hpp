@@ -23,12 +23,18 @@ double dry_step_limit(const SaturatedSoil& soil, double h);
 /// the scheme of step.cpp for plane waves on the lattice, bisected on the spectral radius.
 double coupled_step_limit(const SaturatedSoil& soil, double h);
 
-/// coupled_step_limit tabulated over porosity, for one soil; cheap enough to ask for every point.
+/// Largest stable step (s) of grains next to free water, where the water need not give way: the frame's wave
+/// damped by drag alone, (2Δt/h)² Ec/Ms ≤ 4 + 2 Δt R/Ms. Smaller than coupled_step_limit in permeable soil,
+/// and some grain is always next to free water.
+double surface_step_limit(const SaturatedSoil& soil, double h);
+
+/// The bounds tabulated over porosity, for one soil; cheap enough to ask for every point.
 class StepLimit {
  public:
   StepLimit() = default;
   StepLimit(const SoilMaterial& soil, double water_density, double water_compliance, double h);
   double dry(double porosity) const { return look_up(dry_, porosity); }
+  /// The smaller of coupled_step_limit and surface_step_limit.
   double saturated(double porosity) const { return look_up(saturated_, porosity); }
 
  private:

@@ -31,10 +31,7 @@ LedgerKeeper<D>::LedgerKeeper(const Scene&, const State<D>& s) {
   ledger_.water_mass = ledger_.water_mass_initial = total(s.water.mass);
   ledger_.solid_mass = ledger_.solid_mass_initial = total(s.soil.mass) + total(s.fixed.mass);
   ledger_.water_volume = ledger_.water_volume_initial = water_volume(s);
-  each_set(s, [&](const auto& set) {
-    for (std::size_t p = 0; p < set.size(); ++p)
-      for (int d = 0; d < D; ++d) start_momentum_[d] += set.mass[p] * set.v[p][d];
-  });
+  start_momentum_ = s.momentum;
 }
 
 template <int D>
@@ -53,8 +50,10 @@ void LedgerKeeper<D>::add(const State<D>& s, const StepReport<D>& step) {
     l.impulse_gravity[d] += impulse;
     l.impulse_walls[d] += step.impulse_walls[d];
     l.impulse_loads[d] += step.impulse_loads[d];
+    l.impulse_surface[d] += step.impulse_surface[d];
     l.momentum_change[d] = step.momentum[d] - start_momentum_[d];
-    const double open = l.momentum_change[d] - l.impulse_gravity[d] - l.impulse_walls[d] - l.impulse_loads[d];
+    const double open = l.momentum_change[d] - l.impulse_gravity[d] - l.impulse_walls[d] -
+                        l.impulse_surface[d] - l.impulse_loads[d];
     residual += open * open;
   }
   weight_impulse_ += std::sqrt(weight);

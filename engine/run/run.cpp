@@ -151,8 +151,8 @@ class Run {
     double limit = std::numeric_limits<double>::infinity();
     for (std::size_t p = 0; p < state_.soil.size(); ++p) {
       const StepLimit& l = state_.constants.step_limits[state_.soil.soil[p]];
-      const bool wet = state_.cell[state_.grid.index(state_.grid.cell_of(state_.soil.x[p]))].unknown >= 0;
-      limit = std::min(limit, wet ? l.saturated(state_.soil.porosity[p]) : l.dry(state_.soil.porosity[p]));
+      const bool confined = state_.cell[state_.grid.index(state_.grid.cell_of(state_.soil.x[p]))].confined;
+      limit = std::min(limit, confined ? l.saturated(state_.soil.porosity[p]) : l.dry(state_.soil.porosity[p]));
     }
     return limit;
   }

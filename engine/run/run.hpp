@@ -77,6 +77,7 @@ struct Ledger {
   double water_volume_drift_max = 0;                  ///< largest |V − V0| / V0
   std::array<double, 3> momentum_change{};            ///< N·s, Σ m v now less at the start
   std::array<double, 3> impulse_gravity{}, impulse_walls{}, impulse_loads{};  ///< N·s
+  std::array<double, 3> impulse_surface{};  ///< N·s, to drops that the water surface carries along
   double momentum_residual = 0;   ///< |change − Σ impulses| / ∫|weight| dt
   double energy_kinetic = 0, energy_potential = 0, energy_strain = 0;  ///< J
   long clipped_points = 0;        ///< positions put back in front of a wall

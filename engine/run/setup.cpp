@@ -68,6 +68,7 @@ State<D> make_state(const Scene& scene) {
   s.water = std::move(points.water);
   for (int d = 0; d < D; ++d) {
     s.sums[d].assign(s.grid.count(), {});
+    s.image[d].assign(s.grid.count(), {});
     s.flow[d].assign(s.grid.count(), {});
   }
   s.cell_sums.assign(s.grid.count(), {});
@@ -81,6 +82,11 @@ State<D> make_state(const Scene& scene) {
   find_surface(s);
   set_initial_pressure(scene, s);
   set_initial_stress(scene, s);
+  const auto add_momentum = [&](const auto& set) {
+    for (std::size_t p = 0; p < set.size(); ++p)
+      for (int d = 0; d < D; ++d) s.momentum[d] += set.mass[p] * set.v[p][d];
+  };
+  add_momentum(s.soil), add_momentum(s.water);
   return s;
 }
 

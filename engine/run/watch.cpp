@@ -115,6 +115,7 @@ std::vector<SeriesInfo> Watch<D>::info() const {
   all.push_back({"ledger.momentum", "N·s", 3});
   all.push_back({"ledger.impulse_gravity", "N·s", 3});
   all.push_back({"ledger.impulse_walls", "N·s", 3});
+  all.push_back({"ledger.impulse_surface", "N·s", 3});
   all.push_back({"ledger.impulse_loads", "N·s", 3});
   all.push_back({"ledger.clipped_points", "1", 1});
   all.push_back({"ledger.clamped_values", "1", 1});
@@ -139,7 +140,7 @@ std::vector<double> Watch<D>::sample(const State<D>& s, const StepReport<D>& ste
   out.insert(out.end(), {l.water_volume, l.water_mass, l.solid_mass, energy, l.energy_kinetic, l.energy_potential,
                          l.energy_strain});
   for (int d = 0; d < 3; ++d) out.push_back(d < D ? step.momentum[d] : 0);
-  for (const auto* impulse : {&l.impulse_gravity, &l.impulse_walls, &l.impulse_loads})
+  for (const auto* impulse : {&l.impulse_gravity, &l.impulse_walls, &l.impulse_surface, &l.impulse_loads})
     out.insert(out.end(), impulse->begin(), impulse->end());
   out.insert(out.end(), {static_cast<double>(l.clipped_points), static_cast<double>(l.clamped_values),
                          static_cast<double>(l.cut_steps), step.dt, static_cast<double>(step.pressure.iterations),

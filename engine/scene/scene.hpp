@@ -187,7 +187,7 @@ struct Numerics {
   PressureScheme pressure = PressureScheme::implicit;
   double pressure_tolerance = 1e-6;   ///< –, see engine/step/pressure.hpp
   std::optional<double> time_step;    ///< s; absent: chosen each step
-  double time_step_factor = 0.5;      ///< –, of the stability bound
+  double time_step_factor = 0.8;      ///< –, of the stability bound
   double drift_time = 0.05;           ///< s, over which true volume drift is fed back; 0: never
   long max_steps = 100'000'000;
 };

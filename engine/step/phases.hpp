@@ -24,9 +24,27 @@ void predict_velocities(State<D>& s, double dt);
 /// 5a. Velocities after the pressure gradient; extrapolated a little way into the air → `flow`.
 template <int D>
 void correct_velocities(State<D>& s);
+/// Impulses (N·s) that supports give to the points in this step: walls and fixed grains, with the water's
+/// pressure on them; and the water surface to the drops that it carries. Summed from forces, not from the
+/// change of momentum, so that the ledger's balance is a check.
+template <int D>
+struct Supports {
+  Vec<D> walls{}, surface{};
+};
+template <int D>
+Supports<D> support_impulses(const State<D>& s, double dt, double pic);
 /// 5b. Faces → points: velocity, stress, porosity, position.
 template <int D>
 void faces_to_points(State<D>& s, double dt, StepReport<D>& report);
+
+/// Part of a kernel's volume that lies below the water surface, from the parts filled by water, grains and
+/// bulk soil. Water fills the pores of the soil that is there first and free room after, so that a surface at
+/// a soil's top, within it or above it is found.
+inline double fill_of(double water, double grains, double soil_bulk) {
+  if (soil_bulk <= 0) return water;
+  const double n = 1 - grains / soil_bulk;
+  return std::min(water / n, soil_bulk) + std::max(0.0, water - n * soil_bulk);
+}
 
 /// Pressure gradient across face `face` of component d as the velocities feel it, Pa/m: between two wet
 /// cells, or from a wet cell to p = 0 at the water surface; at a closed face the weight of still water.

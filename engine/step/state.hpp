@@ -20,11 +20,17 @@ namespace quicksand {
 struct FaceSums {
   double soil_mass = 0;       ///< kg
   double grains = 0;          ///< m³
+  double soil_bulk = 0;       ///< m³, grains and pores
   double soil_momentum = 0;   ///< kg·m/s
   double soil_force = 0;      ///< N, of the effective stress
   double drag = 0;            ///< N·s/m, bulk volume × R
   double water_mass = 0;      ///< kg
   double water_momentum = 0;  ///< kg·m/s
+};
+
+/// Twice the mass that reached a face as a mirror image with its sign changed: what walls hold of its momentum.
+struct FaceImage {
+  double soil = 0, water = 0;  ///< kg
 };
 
 /// What grains that never move occupy and resist; computed once.
@@ -42,6 +48,9 @@ struct FaceFlow {
   std::uint8_t wet = 0;             ///< 1: a side has pressure; 2, 3: extrapolated from such
   bool soil_held = false;           ///< grains are in contact with a wall here
 
+  double drag = 0;                ///< N·s/m⁴ per cell volume, between the phases
+  double fixed_drag = 0;          ///< N·s/m⁴ on the water, of grains that do not move
+
   double flux() const { return phi * soil + n * water; }
   double flux_response() const { return phi * soil_response + n * water_response; }
 };
@@ -56,6 +65,7 @@ struct CellState {
   double excess = 0;    ///< –, volume of water and grains beyond the room, where fully wet
   double n = 1;         ///< –, room for water
   int unknown = -1;     ///< row in the pressure system; −1: air or wall
+  bool confined = false;  ///< wet, and no air in the cells around
 };
 
 /// Counters of everything that is done to the state other than by the equations.
@@ -113,6 +123,7 @@ struct State {
   std::vector<SurfaceLoad<D>> loads;
 
   std::array<std::vector<FaceSums>, D> sums;
+  std::array<std::vector<FaceImage>, D> image;
   std::array<std::vector<FaceFlow>, D> flow;
   std::array<std::vector<FixedFace>, D> fixed_face;
   std::vector<CellSums> cell_sums;
@@ -122,7 +133,9 @@ struct State {
   std::vector<double> pressure_old;  ///< Pa, at the start of the step
   PressureSystem<D> pressure_system;
 
-  double time = 0;  ///< s
+  double time = 0;     ///< s
+  Vec<D> momentum{};   ///< N·s, Σ m v of all moving points
+  Vec<D> load_force{};  ///< N, of the surface loads in this step
   Interventions interventions;
   std::array<double, kPhaseNames.size()> phase_seconds{};  ///< wall time
 };

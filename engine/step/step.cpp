@@ -66,6 +66,7 @@ StepReport<D> advance(State<D>& s, double dt) {
   clock.lap(Phase::to_points);
   s.time += dt;
   report.dt = dt;
+  for (int d = 0; d < D; ++d) report.impulse_loads[d] = dt * s.load_force[d];
   return report;
 }
 

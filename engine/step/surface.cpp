@@ -20,15 +20,6 @@ double depth_of_fill(double fill) {
   return xi;
 }
 
-/// Part of the kernel's volume that lies below the water surface. Water fills the pores of the soil that
-/// is there first and free room after, so that a surface at a soil's top, within it or above it is found.
-double fill_of(const CellSums& c, double volume) {
-  const double water = c.water / volume, bulk = c.soil_bulk / volume;
-  if (bulk <= 0) return water;
-  const double n = 1 - c.grains / c.soil_bulk;
-  return std::min(water / n, bulk) + std::max(0.0, water - n * bulk);
-}
-
 }  // namespace
 
 template <int D>
@@ -41,7 +32,7 @@ void find_surface(State<D>& s) {
       c = {};
       if (s.water_walls.blocked(i)) return;
       c.n = std::max(1 - sums.grains / volume, kMinRoom);
-      c.fill = fill_of(sums, volume);
+      c.fill = fill_of(sums.water / volume, sums.grains / volume, sums.soil_bulk / volume);
       c.depth = depth_of_fill(c.fill);
       c.unknown = c.depth > 0 ? 0 : -1;
       if (c.unknown < 0) s.pressure[i] = 0;
@@ -53,13 +44,13 @@ void find_surface(State<D>& s) {
       CellState& c = s.cell[i];
       if (c.unknown < 0) return;
       const double excess = (s.cell_sums[i].water + s.cell_sums[i].grains) / volume - 1;
-      bool air = false;
+      c.confined = true;
       for (int d = 0; d < D; ++d)
         for (int side : {0, 1}) {
           const int face = i + side * s.grid.stride[d], other = i + (2 * side - 1) * s.grid.stride[d];
-          if (!s.water_walls.closed(d, face) && s.cell[other].unknown < 0) air = true;
+          if (!s.water_walls.closed(d, face) && s.cell[other].unknown < 0) c.confined = false;
         }
-      if (excess > 0 || !air) c.excess = excess;
+      if (excess > 0 || c.confined) c.excess = excess;
     });
   });
 }

@@ -32,9 +32,11 @@ void soil_to_faces(State<D>& s, std::uint32_t p) {
       for (int j = 0; j < D; ++j) divergence += stress[j] * g[j];
       f.soil_mass += w * mass;
       f.grains += w * grains;
+      f.soil_bulk += w * bulk;
       f.soil_momentum += sign * w * momentum;
       f.soil_force -= sign * bulk * divergence;  // [FMS19] eq. (1), ∇·σ′ in its weak form
       f.drag += w * drag;
+      if (sign < 0) s.image[d][face].soil += 2 * w * mass;
     });
   }
   // Room is measured with the water's own kernels, so that grains and water fold at the same walls.
@@ -54,6 +56,7 @@ void water_to_faces(State<D>& s, std::uint32_t p) {
       FaceSums& f = s.sums[d][face];
       f.water_mass += w * mass;
       f.water_momentum += sign * w * momentum;
+      if (sign < 0) s.image[d][face].water += 2 * w * mass;
     });
   }
   for_centers(s.grid, s.water_walls, kernel,
@@ -63,11 +66,13 @@ void water_to_faces(State<D>& s, std::uint32_t p) {
 /// Surface loads are few: serial, in the order of their markers.
 template <int D>
 void loads_to_faces(State<D>& s) {
+  s.load_force = {};
   for (const SurfaceLoad<D>& load : s.loads) {
     if (!load.active) continue;
     const double rise = load.ramp > 0 ? std::min(1.0, (s.time - load.start) / load.ramp) : 1.0;
     for (const Vec<D>& x : load.marker) {
       const PointKernel<D> kernel(s.grid, x);
+      for (int d = 0; d < D; ++d) s.load_force[d] += rise * load.force[d];
       for (int d = 0; d < D; ++d)
         for_faces(s.grid, s.soil_walls, kernel, d, [&](int face, double w, double sign, const Vec<D>&) {
           s.sums[d][face].soil_force += sign * w * rise * load.force[d];
@@ -85,7 +90,10 @@ void points_to_faces(State<D>& s) {
   const bool has_fixed = s.fixed.size() > 0;
   s.blocks.all([&](int b) {
     s.blocks.cells(s.grid, b, true, [&](int i, const Cell<D>&) {
-      for (int d = 0; d < D; ++d) s.sums[d][i] = {};
+      for (int d = 0; d < D; ++d) {
+        s.sums[d][i] = {};
+        s.image[d][i] = {};
+      }
       s.cell_sums[i] = has_fixed ? s.fixed_cell[i] : CellSums{};
     });
   });

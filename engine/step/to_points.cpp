@@ -130,10 +130,11 @@ void soil_from_faces(State<D>& s, std::uint32_t p, double dt, double pic, Totals
     const StressUpdate<D> u = update_stress<D>(material, soil.stress[p], l, dt);
     soil.stress[p] = u.stress;
     soil.plastic_strain[p] += u.plastic_strain;
+    // Next to the air no pressure resists, so that the frame's own wave is the bound.
+    const StepLimit& limit = s.constants.step_limits[soil.soil[p]];
+    const bool confined = s.cell[kernel.home].confined;
+    totals.soil_limit = std::min(totals.soil_limit, confined ? limit.saturated(n) : limit.dry(n));
   }
-  const StepLimit& limit = s.constants.step_limits[soil.soil[p]];
-  const bool wet = s.cell[kernel.home].unknown >= 0;
-  totals.soil_limit = std::min(totals.soil_limit, wet ? limit.saturated(n) : limit.dry(n));
   const Stress<D>& sigma = soil.stress[p];
   const double volume = soil.mass[p] / (material.grain_density * (1 - n));
   const double trace = sigma[0] + sigma[1] + sigma[2];
@@ -168,6 +169,9 @@ void move_loads(State<D>& s, double dt) {
 template <int D>
 void faces_to_points(State<D>& s, double dt, StepReport<D>& report) {
   const double pic = 1 - std::exp(-s.constants.pic_rate * dt);
+  const Supports<D> supports = support_impulses(s, dt, pic);
+  report.impulse_walls = supports.walls;
+  report.impulse_surface = supports.surface;
   const Totals<D> totals = s.blocks.template sum<Totals<D>>([&](int b) {
     Totals<D> t;
     for (auto i = s.soil_blocks.begin[b]; i < s.soil_blocks.begin[b + 1]; ++i)
@@ -177,7 +181,7 @@ void faces_to_points(State<D>& s, double dt, StepReport<D>& report) {
     return t;
   });
   move_loads(s, dt);
-  report.momentum = totals.momentum;
+  s.momentum = report.momentum = totals.momentum;
   report.moving_mass = totals.mass;
   report.kinetic = totals.kinetic;
   report.strain = totals.strain;

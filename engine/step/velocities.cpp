@@ -22,25 +22,34 @@ double pressure_gradient(const State<D>& s, int d, int face) {
 
 namespace {
 
+/// Smallest wet part of a face next to a wet cell; a flat surface gives more than 1/6.
+constexpr double kLeastWetPart = 0.1;
+
 /// Momentum balance of one face, per unit volume, before the pressure gradient.
 struct Balance {
   double soil_mass = 0, soil_momentum = 0;    ///< kg/m³; incl. dt × forces
   double water_mass = 0, water_momentum = 0;
-  double drag = 0, fixed_drag = 0;            ///< dt × R, kg/m³
+  double drag = 0;                            ///< dt × R on the grains, kg/m³
+  double water_drag = 0;                      ///< the same on the water; see below
+  double fixed_drag = 0;                      ///< dt × R of grains that do not move
 };
 
 /// Implicit drag: [FMS19] eqs. (1) and (2) as one 2×2 system, solved for v̂ and for the response to G.
+/// The water's inertia is that of a full face, but its points carry only the mass that is there, a few per
+/// cent more or less; `water_drag` is scaled so that points of both phases exchange exactly one impulse.
 void solve_pair(const Balance& b, double dt, FaceFlow& f) {
-  const double a11 = b.soil_mass + b.drag, a22 = b.water_mass + b.drag + b.fixed_drag, a12 = -b.drag;
-  const double det = a11 * a22 - a12 * a12;
+  const double a11 = b.soil_mass + b.drag, a12 = -b.drag;
+  const double a22 = b.water_mass + b.water_drag + b.fixed_drag, a21 = -b.water_drag;
+  const double det = a11 * a22 - a12 * a21;
   f.soil = (a22 * b.soil_momentum - a12 * b.water_momentum) / det;
-  f.water = (a11 * b.water_momentum - a12 * b.soil_momentum) / det;
+  f.water = (a11 * b.water_momentum - a21 * b.soil_momentum) / det;
   f.soil_response = dt * (a22 * f.phi - a12 * f.n) / det;
-  f.water_response = dt * (a11 * f.n - a12 * f.phi) / det;
+  f.water_response = dt * (a11 * f.n - a21 * f.phi) / det;
 }
 
+/// Water past grains that are held.
 void solve_water(const Balance& b, double dt, FaceFlow& f) {
-  const double a = b.water_mass + b.drag + b.fixed_drag;  // moving grains that are held count as fixed
+  const double a = b.water_mass + b.water_drag + b.fixed_drag;
   f.soil = f.soil_response = 0;
   f.water = b.water_momentum / a;
   f.water_response = dt * f.n / a;
@@ -60,6 +69,16 @@ int leaving_direction(const State<D>& s, int d, int face) {
   return low == high ? 0 : low ? 1 : -1;
 }
 
+/// Part of a wet face's volume that is soil or below the water surface; 1 away from the surface.
+template <int D>
+double wet_part(const State<D>& s, int d, int face) {
+  if (s.cell[face].unknown >= 0 && s.cell[face - s.grid.stride[d]].unknown >= 0) return 1;
+  const FaceSums& f = s.sums[d][face];
+  const double volume = s.grid.cell_volume(), bulk = f.soil_bulk / volume;
+  const double fill = fill_of(f.water_mass / (s.constants.water_density * volume), f.grains / volume, bulk);
+  return std::clamp(std::max(fill, bulk), kLeastWetPart, 1.0);
+}
+
 template <int D>
 void predict_face(State<D>& s, int d, int face, double dt) {
   const FaceSums& sums = s.sums[d][face];
@@ -72,8 +91,11 @@ void predict_face(State<D>& s, int d, int face, double dt) {
   f.wet = water_open && (s.cell[face].unknown >= 0 || s.cell[face - s.grid.stride[d]].unknown >= 0);
   if (!soil && !water && !f.wet) return;
 
+  // A face at the water surface stands for the wet part of its volume: what half a face of saturated soil
+  // holds is dense over that half, and the pressure falls over that half only.
+  const double part = f.wet ? wet_part(s, d, face) : 1;
   Balance b;
-  f.phi = sums.grains / volume;
+  f.phi = sums.grains / (part * volume);
   double fixed_phi = 0;
   if (s.fixed.size()) {
     fixed_phi = s.fixed_face[d][face].phi;
@@ -82,8 +104,8 @@ void predict_face(State<D>& s, int d, int face, double dt) {
   f.n = std::max(1 - f.phi - fixed_phi, kMinRoom);
   if (soil) {
     f.soil_old = sums.soil_momentum / sums.soil_mass;
-    b.soil_mass = sums.soil_mass / volume;
-    b.soil_momentum = b.soil_mass * (f.soil_old + dt * g) + dt * sums.soil_force / volume;
+    b.soil_mass = sums.soil_mass / (part * volume);
+    b.soil_momentum = b.soil_mass * (f.soil_old + dt * g) + dt * sums.soil_force / (part * volume);
   }
   if (water || f.wet) {
     // Inertia of a wet face is that of a full one, n ρw, not of the few drops whose kernels reach it; where
@@ -94,8 +116,12 @@ void predict_face(State<D>& s, int d, int face, double dt) {
     b.water_mass = there * full;
     const double viscous = water && s.constants.viscosity > 0 ? viscous_acceleration(s, d, face) : 0;
     b.water_momentum = b.water_mass * (f.water_old + dt * (g + viscous));
-    b.drag = dt * there * sums.drag / volume;
+    b.drag = dt * there * sums.drag / (part * volume);
+    f.drag = b.drag / dt * part;
+    const double share = f.wet ? sums.water_mass / (part * volume * full) : 1;
+    b.water_drag = b.drag / std::max(share, kLeastWetPart);
     b.fixed_drag *= there;
+    f.fixed_drag = b.fixed_drag / dt;
   }
 
   bool held = false;

@@ -1,0 +1,91 @@
+// What walls do to the momentum of the points, for the ledger.
+//
+// A face hands Δv to the points with the mass M that they left on it, so the points gain Σ M Δv, less what
+// goes to mirror images. Drag between the phases cancels face by face; weight is counted elsewhere. What is
+// left are the reactions of supports: of the effective stress (its forces sum to zero but for walls), of the
+// pressure (over all material, ∫∇p dV is the pressure on its walls, as p = 0 on the free surface), of fixed
+// grains, of contact, and of the mirrors.
+
+#include "engine/step/phases.hpp"
+
+namespace quicksand {
+namespace {
+
+template <int D>
+double soil_reaction(const State<D>& s, int d, int face, double dt) {
+  const FaceSums& sums = s.sums[d][face];
+  const FaceFlow& f = s.flow[d][face];
+  if (sums.soil_mass <= kMassCutoff * s.constants.water_density * s.grid.cell_volume()) return 0;
+  const double change = f.soil - f.soil_old;
+  const double mirrored = -s.image[d][face].soil * change;
+  const bool stopped = s.soil_walls.closed(d, face) && f.soil == 0;
+  if (stopped) {
+    const double drag = dt * f.drag * s.grid.cell_volume() * f.water;
+    return mirrored + sums.soil_mass * (change - dt * s.constants.gravity[d]) - drag;
+  }
+  const double pressure = f.wet ? -sums.grains * pressure_gradient(s, d, face) : 0;
+  return mirrored + dt * (sums.soil_force + pressure);
+}
+
+template <int D>
+double water_reaction(const State<D>& s, int d, int face, double dt) {
+  const FaceSums& sums = s.sums[d][face];
+  const FaceFlow& f = s.flow[d][face];
+  if (s.water_walls.closed(d, face)) return -dt * sums.water_mass * s.constants.gravity[d];
+  const double mirrored = -s.image[d][face].water * (f.water - f.water_old);
+  if (f.wet != 1) return mirrored;  // in the air: falls, or is carried along by the surface
+  const double rho = s.constants.water_density;
+  return mirrored - dt * sums.water_mass / rho * (pressure_gradient(s, d, face) + f.fixed_drag * f.water / f.n);
+}
+
+/// Drops above the last wet face move with the water below them instead of falling through it.
+template <int D>
+double surface_support(const State<D>& s, int d, int face, double dt) {
+  const FaceSums& sums = s.sums[d][face];
+  const FaceFlow& f = s.flow[d][face];
+  if (f.wet < 2) return 0;
+  return sums.water_mass * (f.water - f.water_old - dt * s.constants.gravity[d]) +
+         dt * f.drag * s.grid.cell_volume() * (f.water - f.soil);
+}
+
+template <int D>
+struct Sum {
+  Vec<D> reaction{}, surface{}, grid{};  ///< grid: Σ M v of the old grid velocities
+  Sum& operator+=(const Sum& o) {
+    for (int d = 0; d < D; ++d) reaction[d] += o.reaction[d], surface[d] += o.surface[d], grid[d] += o.grid[d];
+    return *this;
+  }
+};
+
+}  // namespace
+
+template <int D>
+Supports<D> support_impulses(const State<D>& s, double dt, double pic) {
+  const Sum<D> sum = s.blocks.template sum<Sum<D>>([&](int b) {
+    Sum<D> part;
+    s.blocks.cells(s.grid, b, true, [&](int face, const Cell<D>&) {
+      for (int d = 0; d < D; ++d) {
+        const FaceSums& sums = s.sums[d][face];
+        if (sums.soil_mass == 0 && sums.water_mass == 0) continue;
+        const FaceFlow& f = s.flow[d][face];
+        part.reaction[d] += soil_reaction(s, d, face, dt) + water_reaction(s, d, face, dt);
+        part.surface[d] += surface_support(s, d, face, dt);
+        part.grid[d] += (sums.soil_mass - s.image[d][face].soil) * f.soil_old +
+                        (sums.water_mass - s.image[d][face].water) * f.water_old;
+      }
+    });
+    return part;
+  });
+  // Relaxing points to the grid's velocity keeps momentum but for what mirrors took from the grid.
+  Supports<D> impulse;
+  for (int d = 0; d < D; ++d) {
+    impulse.walls[d] = sum.reaction[d] - dt * s.load_force[d] + pic * (sum.grid[d] - s.momentum[d]);
+    impulse.surface[d] = sum.surface[d];
+  }
+  return impulse;
+}
+
+template Supports<2> support_impulses<2>(const State<2>&, double, double);
+template Supports<3> support_impulses<3>(const State<3>&, double, double);
+
+}  // namespace quicksand
