@@ -38,7 +38,7 @@ struct Grid {
 
   int count() const { return stride[D - 1] * size[D - 1]; }
   double cell_volume() const { return D == 2 ? h * h : h * h * h; }  ///< m³ (per metre in the plane)
-  double face_area() const { return D == 2 ? h : h * h; }           ///< m²
+  double face_area() const { return D == 2 ? h : h * h; }            ///< m²
 
   int index(const Cell<D>& c) const {
     int i = 0;

@@ -30,7 +30,8 @@ void close_outline(const Grid<D>& grid, const std::vector<char>& inside, Walls<D
 template <int D>
 std::vector<char> cells_in(const Grid<D>& grid, const Region& region) {
   std::vector<char> inside(grid.count(), 0);
-  for_each_cell(grid, [&](int i, const Cell<D>& c) { inside[i] = contains(region, to_vec3<D>(grid.center(c)), D); });
+  for_each_cell(
+      grid, [&](int i, const Cell<D>& c) { inside[i] = contains(region, to_vec3<D>(grid.center(c)), D); });
   return inside;
 }
 
@@ -87,7 +88,8 @@ std::vector<std::pair<int, int>> faces_on(const Grid<D>& grid, const Segment& li
 }
 
 template <int D>
-SceneWalls<D> make_walls(const Scene& scene, const Grid<D>& grid, const std::vector<std::string>& open_gates) {
+SceneWalls<D> make_walls(const Scene& scene, const Grid<D>& grid,
+                         const std::vector<std::string>& open_gates) {
   Walls<D> walls(grid);
   close_domain(scene, grid, walls);
   for (const Wall& wall : scene.walls) {

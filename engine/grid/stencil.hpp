@@ -18,10 +18,10 @@ struct Spline {
 /// One-dimensional factors of all weights of a point; computed once per pass.
 template <int D>
 struct PointKernel {
-  int home = 0;                    ///< index of the point's cell
-  std::array<Spline, D> center;    ///< nodes: centres of cells −1, 0, 1
-  std::array<Spline, D> face;      ///< nodes: faces first−…
-  std::array<int, D> first{};      ///< first face position: −1 or 0 (relative to the low side of the cell)
+  int home = 0;                  ///< index of the point's cell
+  std::array<Spline, D> center;  ///< nodes: centres of cells −1, 0, 1
+  std::array<Spline, D> face;    ///< nodes: faces first−…
+  std::array<int, D> first{};    ///< first face position: −1 or 0 (relative to the low side of the cell)
 
   PointKernel(const Grid<D>& grid, const Vec<D>& x) {
     const Cell<D> c = grid.cell_of(x);

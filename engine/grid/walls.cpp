@@ -8,7 +8,7 @@ template <int D>
 struct Walk {
   int cell = 0;
   std::array<bool, D> mirrored{};
-  std::array<int, D> wall{};       ///< face that mirrored, per axis
+  std::array<int, D> wall{};  ///< face that mirrored, per axis
   std::array<bool, D> no_slip{};
   bool direct() const {
     for (bool m : mirrored)

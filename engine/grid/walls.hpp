@@ -18,9 +18,9 @@ constexpr int power(int base, int exponent) { return exponent == 0 ? 1 : base * 
 
 /// What becomes of a face (or cell centre) near a wall.
 struct Fold {
-  int target = 0;           ///< face or cell index that receives it
-  float tangential = 1;     ///< sign from mirrors across other axes
-  int normal_wall = -1;     ///< wall face of the mirror across the component's own axis; −1: none
+  int target = 0;        ///< face or cell index that receives it
+  float tangential = 1;  ///< sign from mirrors across other axes
+  int normal_wall = -1;  ///< wall face of the mirror across the component's own axis; −1: none
 };
 
 template <int D>

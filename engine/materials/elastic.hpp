@@ -8,8 +8,8 @@ struct Elastic {
   static Elastic from_young(double young, double poisson) {
     return {young / (2 * (1 + poisson)), young / (3 * (1 - 2 * poisson))};
   }
-  double lame() const { return bulk - 2 * shear / 3; }              ///< Pa, λ
-  double constrained() const { return bulk + 4 * shear / 3; }       ///< Pa, Ec
+  double lame() const { return bulk - 2 * shear / 3; }         ///< Pa, λ
+  double constrained() const { return bulk + 4 * shear / 3; }  ///< Pa, Ec
 };
 
 }  // namespace quicksand

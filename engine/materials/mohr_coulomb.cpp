@@ -25,7 +25,8 @@ std::array<double, 3> flow(const MohrCoulomb& law, Face f) {
 
 std::array<double, 3> stress_of(const Elastic& e, const std::array<double, 3>& strain) {
   const double volume = e.lame() * (strain[0] + strain[1] + strain[2]);
-  return {volume + 2 * e.shear * strain[0], volume + 2 * e.shear * strain[1], volume + 2 * e.shear * strain[2]};
+  return {volume + 2 * e.shear * strain[0], volume + 2 * e.shear * strain[1],
+          volume + 2 * e.shear * strain[2]};
 }
 
 /// d(yield of f)/d(multiplier of g), sign changed: the elastic stiffness between two faces.
@@ -55,10 +56,12 @@ MohrCoulombReturn return_to_edge(const MohrCoulomb& law, const Elastic& e, const
   const double a11 = stiffness(law, e, first, first), a12 = stiffness(law, e, first, second);
   const double a21 = stiffness(law, e, second, first), a22 = stiffness(law, e, second, second);
   const double det = a11 * a22 - a12 * a21;
-  return relax(law, e, trial, first, (a22 * f1 - a12 * f2) / det, second, (a11 * f2 - a21 * f1) / det, region);
+  return relax(law, e, trial, first, (a22 * f1 - a12 * f2) / det, second, (a11 * f2 - a21 * f1) / det,
+               region);
 }
 
-MohrCoulombReturn return_to_apex(const MohrCoulomb& law, const Elastic& e, const std::array<double, 3>& trial) {
+MohrCoulombReturn return_to_apex(const MohrCoulomb& law, const Elastic& e,
+                                 const std::array<double, 3>& trial) {
   const double apex = law.cohesion * law.cos_phi / law.sin_phi;
   MohrCoulombReturn r{{apex, apex, apex}, {}, YieldRegion::apex};
   const double mean = (trial[0] + trial[1] + trial[2]) / 3;

@@ -25,6 +25,7 @@ struct MohrCoulombReturn {
 /// meet, else to the apex c·cot φ. With linear faces each return is exact in one step.
 /// `trial` must be sorted. A stress of exactly zero with c = 0 is admissible and stays.
 /// Source: E. A. de Souza Neto, D. Perić, D. R. J. Owen, Computational Methods for Plasticity, ch. 8.
-MohrCoulombReturn return_map(const MohrCoulomb& law, const Elastic& elastic, const std::array<double, 3>& trial);
+MohrCoulombReturn return_map(const MohrCoulomb& law, const Elastic& elastic,
+                             const std::array<double, 3>& trial);
 
 }  // namespace quicksand

@@ -100,7 +100,8 @@ SoilMaterial SoilMaterial::from(const Soil& soil, const Water& water) {
 }
 
 template <int D>
-StressUpdate<D> update_stress(const SoilMaterial& soil, const Stress<D>& stress, const Gradient<D>& l, double dt) {
+StressUpdate<D> update_stress(const SoilMaterial& soil, const Stress<D>& stress, const Gradient<D>& l,
+                              double dt) {
   const Stress<D> trial = elastic_trial<D>(soil.elastic, stress, l, dt);
   if (soil.law == SoilLaw::linear_elastic) return {trial, 0};
 
@@ -109,7 +110,8 @@ StressUpdate<D> update_stress(const SoilMaterial& soil, const Stress<D>& stress,
   if (r.region == YieldRegion::elastic) return {trial, 0};
   const auto& e = r.plastic_strain;
   const double mean = (e[0] + e[1] + e[2]) / 3;
-  const double shear = (e[0] - mean) * (e[0] - mean) + (e[1] - mean) * (e[1] - mean) + (e[2] - mean) * (e[2] - mean);
+  const double shear =
+      (e[0] - mean) * (e[0] - mean) + (e[1] - mean) * (e[1] - mean) + (e[2] - mean) * (e[2] - mean);
   const Matrix back = p.direction * Eigen::Vector3d(r.stress[0], r.stress[1], r.stress[2]).asDiagonal() *
                       p.direction.transpose();
   return {to_stress<D>(back), std::sqrt(2.0 / 3.0 * shear)};

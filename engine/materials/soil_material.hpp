@@ -31,9 +31,12 @@ struct StressUpdate {
   double plastic_strain;
 };
 template <int D>
-StressUpdate<D> update_stress(const SoilMaterial& soil, const Stress<D>& stress, const Gradient<D>& l, double dt);
+StressUpdate<D> update_stress(const SoilMaterial& soil, const Stress<D>& stress, const Gradient<D>& l,
+                              double dt);
 
-extern template StressUpdate<2> update_stress<2>(const SoilMaterial&, const Stress<2>&, const Gradient<2>&, double);
-extern template StressUpdate<3> update_stress<3>(const SoilMaterial&, const Stress<3>&, const Gradient<3>&, double);
+extern template StressUpdate<2> update_stress<2>(const SoilMaterial&, const Stress<2>&, const Gradient<2>&,
+                                                 double);
+extern template StressUpdate<3> update_stress<3>(const SoilMaterial&, const Stress<3>&, const Gradient<3>&,
+                                                 double);
 
 }  // namespace quicksand

@@ -62,8 +62,8 @@ double surface_step_limit(const SaturatedSoil& soil, double h) {
 StepLimit::StepLimit(const SoilMaterial& soil, double water_density, double water_compliance, double h) {
   for (int i = 0; i < kEntries; ++i) {
     const double n = (i + 0.5) / kEntries;
-    const SaturatedSoil s{soil.elastic.constrained(), soil.grain_density,      water_density,
-                          water_compliance,           n, soil.drag.resistance(n)};
+    const SaturatedSoil s{soil.elastic.constrained(), soil.grain_density, water_density, water_compliance, n,
+                          soil.drag.resistance(n)};
     dry_[i] = dry_step_limit(s, h);
     saturated_[i] = std::min(coupled_step_limit(s, h), surface_step_limit(s, h));
   }

@@ -40,14 +40,16 @@ void count_points(const Scene& scene, Plan& plan) {
   for (int d = 0; d < D; ++d) plan.cells[d] = grid.cells[d];
   const double per_soil = 3 * sizeof(Vec<D>) + sizeof(Stress<D>) + 3 * sizeof(double) + 2 * sizeof(int) + 8;
   const double per_water = 3 * sizeof(Vec<D>) + sizeof(double) + sizeof(int) + 8;
-  const double per_cell = D * (sizeof(FaceSums) + sizeof(FaceFlow) + sizeof(FixedFace)) + 2 * sizeof(CellSums) +
-                          sizeof(CellState) + 2 * sizeof(double) + 2 * (D + 7);
+  const double per_cell = D * (sizeof(FaceSums) + sizeof(FaceFlow) + sizeof(FixedFace)) +
+                          2 * sizeof(CellSums) + sizeof(CellState) + 2 * sizeof(double) + 2 * (D + 7);
   plan.memory_bytes = per_soil * static_cast<double>(plan.soil_points + plan.fixed_soil_points) +
                       per_water * static_cast<double>(plan.water_points) + per_cell * grid.count();
 }
 
 void explain(const Scene& scene, Plan& plan) {
-  const auto say = [&](bool yes, const char* with, const char* without) { plan.reasons.push_back(yes ? with : without); };
+  const auto say = [&](bool yes, const char* with, const char* without) {
+    plan.reasons.push_back(yes ? with : without);
+  };
   say(plan.has_soil, "Grains: momentum balance, effective stress and porosity of the moving soil bodies.",
       "No soil moves: no grain velocities and no stress.");
   say(plan.has_water, "Water: momentum balance and one pressure per wet cell, solved implicitly.",
@@ -74,14 +76,16 @@ Plan make_plan(const Scene& scene) {
   explain(scene, plan);
 
   double speed = 0;
-  for (const Body& body : scene.bodies) speed = std::max(speed, std::hypot(body.velocity[0], body.velocity[1], body.velocity[2]));
+  for (const Body& body : scene.bodies)
+    speed = std::max(speed, std::hypot(body.velocity[0], body.velocity[1], body.velocity[2]));
   const StepSituation start{initial_soil_limit(scene, plan.has_water, plan.cell_size), speed};
   plan.bounds = step_bounds(scene, start);
   plan.bound = choose_step(scene, start);
   plan.time_step = plan.bound.seconds;
   for (const Stage& stage : scene.stages) plan.end_time += stage.duration;
   plan.steps = std::ceil(plan.end_time / plan.time_step);
-  plan.seconds = plan.steps * static_cast<double>(plan.soil_points + plan.water_points) / kPointStepsPerSecond;
+  plan.seconds =
+      plan.steps * static_cast<double>(plan.soil_points + plan.water_points) / kPointStepsPerSecond;
   return plan;
 }
 

@@ -18,17 +18,17 @@ struct StepBound {
 struct Plan {
   int dimensions = 2;
   std::array<int, 3> cells{1, 1, 1};
-  double cell_size = 0;      ///< m
+  double cell_size = 0;  ///< m
   bool has_soil = false, has_water = false, has_viscosity = false;
   std::vector<std::string> reasons;  ///< plain sentences: what is modelled or left out and why
   std::size_t soil_points = 0, fixed_soil_points = 0, water_points = 0;
   double memory_bytes = 0;
-  double time_step = 0;      ///< s, at the start
-  StepBound bound;           ///< the smallest of `bounds`
+  double time_step = 0;  ///< s, at the start
+  StepBound bound;       ///< the smallest of `bounds`
   std::vector<StepBound> bounds;
-  double end_time = 0;       ///< s, sum of the stages' (longest) durations
+  double end_time = 0;  ///< s, sum of the stages' (longest) durations
   double steps = 0;
-  double seconds = 0;        ///< estimated wall time on this machine
+  double seconds = 0;  ///< estimated wall time on this machine
 };
 
 /// Requires `check(scene)` to be empty.

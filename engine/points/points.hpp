@@ -16,10 +16,10 @@ using Stress = std::array<double, kStress<D>>;
 /// What both phases' points carry.
 template <int D>
 struct PointSet {
-  std::vector<Vec<D>> x;         ///< m
-  std::vector<Vec<D>> v;         ///< m/s
-  std::vector<Vec<D>> start;     ///< m, position at seeding
-  std::vector<double> mass;      ///< kg
+  std::vector<Vec<D>> x;      ///< m
+  std::vector<Vec<D>> v;      ///< m/s
+  std::vector<Vec<D>> start;  ///< m, position at seeding
+  std::vector<double> mass;   ///< kg
   std::vector<std::int32_t> body;
 
   std::size_t size() const { return x.size(); }
@@ -29,10 +29,6 @@ struct PointSet {
     start.push_back(at);
     mass.push_back(m);
     body.push_back(body_index);
-  }
-  template <class F>
-  void each_array(F&& f) {
-    f(x), f(v), f(start), f(mass), f(body);
   }
 };
 
@@ -45,21 +41,6 @@ struct SoilPoints : PointSet<D> {
   std::vector<Stress<D>> stress;       ///< Pa, effective, tension positive
   std::vector<double> plastic_strain;  ///< –, accumulated deviatoric
   std::vector<std::int32_t> soil;      ///< index of the material
-
-  template <class F>
-  void each_array(F&& f) {
-    PointSet<D>::each_array(f);
-    f(porosity), f(stress), f(plastic_strain), f(soil);
-  }
 };
-
-/// Puts element order[i] at place i in every array.
-template <class Points>
-void reorder(Points& points, const std::vector<std::uint32_t>& order) {
-  points.each_array([&](auto& array) {
-    auto old = array;
-    for (std::size_t i = 0; i < order.size(); ++i) array[i] = old[order[i]];
-  });
-}
 
 }  // namespace quicksand

@@ -49,7 +49,8 @@ SeededPoints<D> seed(const Scene& scene, const Grid<D>& grid) {
           const auto soil = scene.soils.find(body.soil);
           n = soil->second.porosity;
           SoilPoints<D>& set = body.fixed ? points.fixed : points.soil;
-          set.add(x, body.fixed ? Vec<D>{} : v, (1 - n) * soil->second.grain_density * share, static_cast<int>(b));
+          set.add(x, body.fixed ? Vec<D>{} : v, (1 - n) * soil->second.grain_density * share,
+                  static_cast<int>(b));
           set.porosity.push_back(n);
           set.stress.push_back({});
           set.plastic_strain.push_back(0);

@@ -6,8 +6,8 @@ namespace quicksand {
 
 template <int D>
 struct SeededPoints {
-  SoilPoints<D> soil;    ///< moving grains
-  SoilPoints<D> fixed;   ///< grains of bodies held in place
+  SoilPoints<D> soil;   ///< moving grains
+  SoilPoints<D> fixed;  ///< grains of bodies held in place
   WaterPoints<D> water;
 };
 

@@ -57,7 +57,8 @@ std::string step_remedy(const Scene& scene) {
     return "The fixed numerics.time_step of " + number(*scene.numerics.time_step) +
            " s is the likely cause: leave it out, so that stable steps are chosen.";
   return "The likely cause is a time step too near its bound: lower numerics.time_step_factor (now " +
-         number(scene.numerics.time_step_factor) + ") by half; if that does not help, refine domain.cell_size.";
+         number(scene.numerics.time_step_factor) +
+         ") by half; if that does not help, refine domain.cell_size.";
 }
 
 }  // namespace
@@ -70,13 +71,15 @@ Failure not_finite(const Scene& scene, const State<D>& s) {
 template <int D>
 Failure collapsed_step(const Scene& scene, const State<D>& s, const StepBound& bound) {
   return describe(scene, s,
-                  "The time step that '" + bound.name + "' allows fell to " + number(bound.seconds) + " s: motion ran away",
+                  "The time step that '" + bound.name + "' allows fell to " + number(bound.seconds) +
+                      " s: motion ran away",
                   step_remedy(scene));
 }
 
 template <int D>
 Failure pressure_not_found(const Scene& scene, const State<D>& s, double residual) {
-  return describe(scene, s, "The water pressure could not be solved for (relative residual " + number(residual) + ")",
+  return describe(scene, s,
+                  "The water pressure could not be solved for (relative residual " + number(residual) + ")",
                   "The likely cause is water torn into single drops, or numerics.pressure_tolerance (now " +
                       number(scene.numerics.pressure_tolerance) +
                       ") below what rounding allows: raise it to 1e-6 or refine domain.cell_size.");
@@ -84,8 +87,8 @@ Failure pressure_not_found(const Scene& scene, const State<D>& s, double residua
 
 Failure too_many_steps(const Scene& scene, double time) {
   return {"max_steps",
-          "The run reached numerics.max_steps = " + std::to_string(scene.numerics.max_steps) + " at t = " + number(time) +
-              " s. Raise it, shorten the stages or use a coarser preset.",
+          "The run reached numerics.max_steps = " + std::to_string(scene.numerics.max_steps) +
+              " at t = " + number(time) + " s. Raise it, shorten the stages or use a coarser preset.",
           time,
           {}};
 }

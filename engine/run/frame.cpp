@@ -45,13 +45,15 @@ struct Builder {
 };
 
 template <class Set>
-constexpr bool is_soil = requires(const Set& set) { set.stress; };
+constexpr bool is_soil = requires(const Set& set) {
+  set.stress;
+};
 
 }  // namespace
 
 const std::vector<std::string>& frame_fields() {
-  static const std::vector<std::string> names{"displacement",     "velocity",       "porosity", "pore_pressure",
-                                              "effective_stress", "plastic_strain", "head"};
+  static const std::vector<std::string> names{
+      "displacement", "velocity", "porosity", "pore_pressure", "effective_stress", "plastic_strain", "head"};
   return names;
 }
 

@@ -26,7 +26,8 @@ std::vector<int> connected_water(const State<D>& s, int seed, std::vector<char>&
   for (std::size_t k = 0; k < found.size(); ++k)
     for (int d = 0; d < D; ++d)
       for (int side : {0, 1}) {
-        const int face = found[k] + side * s.grid.stride[d], other = found[k] + (2 * side - 1) * s.grid.stride[d];
+        const int face = found[k] + side * s.grid.stride[d],
+                  other = found[k] + (2 * side - 1) * s.grid.stride[d];
         if (s.water_walls.closed(d, face) || seen[other] || s.cell[other].unknown < 0) continue;
         seen[other] = 1;
         found.push_back(other);
@@ -113,7 +114,8 @@ void set_initial_stress(const Scene& scene, State<D>& s) {
     const double weight = std::max(0.0, density * g * spacing);
     const double vertical = above + 0.5 * weight;
     above += weight;
-    const double nu = (3 * m.elastic.bulk - 2 * m.elastic.shear) / (2 * (3 * m.elastic.bulk + m.elastic.shear));
+    const double nu =
+        (3 * m.elastic.bulk - 2 * m.elastic.shear) / (2 * (3 * m.elastic.bulk + m.elastic.shear));
     const double natural = m.law == SoilLaw::linear_elastic ? nu / (1 - nu) : 1 - m.mohr_coulomb.sin_phi;
     const double k0 = scene.initial.k0.value_or(natural);
     soil.stress[p] = {};

@@ -18,14 +18,21 @@ namespace quicksand {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
 
 /// One run from its first to its last step.
 template <int D>
 class Run {
  public:
   Run(const Scene& scene, ResultSink& sink, RunMonitor& monitor)
-      : scene_(scene), sink_(sink), monitor_(monitor), state_(make_state<D>(scene)), ledger_(scene, state_), watch_(scene) {
+      : scene_(scene),
+        sink_(sink),
+        monitor_(monitor),
+        state_(make_state<D>(scene)),
+        ledger_(scene, state_),
+        watch_(scene) {
     for (const Stage& stage : scene.stages) end_time_ += stage.duration;
     last_.soil_limit = first_soil_limit();
   }
@@ -70,7 +77,8 @@ class Run {
 
   bool step(double stage_end) {
     const StepBound chosen = choose_step(scene_, {last_.soil_limit, last_.max_speed});
-    if (chosen.seconds < kCollapse * first_step(chosen.seconds)) return fail(collapsed_step(scene_, state_, chosen));
+    if (chosen.seconds < kCollapse * first_step(chosen.seconds))
+      return fail(collapsed_step(scene_, state_, chosen));
     last_ = advance(state_, until_event(chosen.seconds, stage_end));
     ++report_.steps;
     report_.time_step_min = report_.steps == 1 ? last_.dt : std::min(report_.time_step_min, last_.dt);
@@ -86,7 +94,8 @@ class Run {
     return true;
   }
 
-  /// Shortens a step so that it ends on the next frame, sample or stage; two equal steps rather than a sliver.
+  /// Shortens a step so that it ends on the next frame, sample or stage; two equal steps rather than a
+  /// sliver.
   double until_event(double dt, double stage_end) const {
     double rest = stage_end - state_.time;
     for (const auto& [last, interval] : {std::pair{last_frame_time_, scene_.output.frame_interval},
@@ -141,10 +150,12 @@ class Run {
     report_.heave = watch_.heave();
     report_.sim_time = state_.time;
     report_.wall_seconds = seconds_since(start_);
-    report_.point_steps = static_cast<double>(report_.steps) * static_cast<double>(state_.soil.size() + state_.water.size());
+    report_.point_steps =
+        static_cast<double>(report_.steps) * static_cast<double>(state_.soil.size() + state_.water.size());
     report_.pressure_iterations_mean = report_.steps ? iterations_ / static_cast<double>(report_.steps) : 0;
     for (const auto& [name, seconds] : bound_seconds_) report_.steps_bound_by.push_back({name, seconds});
-    for (std::size_t i = 0; i < kPhaseNames.size(); ++i) report_.phases.push_back({kPhaseNames[i], state_.phase_seconds[i]});
+    for (std::size_t i = 0; i < kPhaseNames.size(); ++i)
+      report_.phases.push_back({kPhaseNames[i], state_.phase_seconds[i]});
   }
 
   double first_soil_limit() const {
@@ -152,7 +163,8 @@ class Run {
     for (std::size_t p = 0; p < state_.soil.size(); ++p) {
       const StepLimit& l = state_.constants.step_limits[state_.soil.soil[p]];
       const bool confined = state_.cell[state_.grid.index(state_.grid.cell_of(state_.soil.x[p]))].confined;
-      limit = std::min(limit, confined ? l.saturated(state_.soil.porosity[p]) : l.dry(state_.soil.porosity[p]));
+      limit =
+          std::min(limit, confined ? l.saturated(state_.soil.porosity[p]) : l.dry(state_.soil.porosity[p]));
     }
     return limit;
   }

@@ -14,9 +14,9 @@ namespace quicksand {
 
 /// One value per point; `values.size() == components * points`, point-major.
 struct FrameField {
-  std::string name;   ///< as in the result file, e.g. "pore_pressure"
+  std::string name;  ///< as in the result file, e.g. "pore_pressure"
   std::string unit;
-  int components = 1; ///< 1, 3 (vectors, third zero in the plane) or 4/6 (xx yy zz xy [yz zx])
+  int components = 1;  ///< 1, 3 (vectors, third zero in the plane) or 4/6 (xx yy zz xy [yz zx])
   std::vector<float> values;
 };
 
@@ -25,10 +25,10 @@ struct Frame {
   std::size_t index = 0;
   double time = 0;  ///< s
   std::string stage;
-  std::vector<double> position;       ///< m, 3 per point
-  std::vector<std::uint8_t> phase;    ///< 0 solid, 1 water
-  std::vector<std::int32_t> body;     ///< index into Scene::bodies
-  std::vector<FrameField> fields;     ///< only the fields asked for
+  std::vector<double> position;     ///< m, 3 per point
+  std::vector<std::uint8_t> phase;  ///< 0 solid, 1 water
+  std::vector<std::int32_t> body;   ///< index into Scene::bodies
+  std::vector<FrameField> fields;   ///< only the fields asked for
   std::size_t points() const { return phase.size(); }
 };
 
@@ -50,12 +50,12 @@ class ResultSink {
 };
 
 struct Progress {
-  double fraction = 0;     ///< 0…1 of simulated time
+  double fraction = 0;  ///< 0…1 of simulated time
   std::string stage;
   double sim_time = 0, end_time = 0;  ///< s
   long step = 0;
-  double time_step = 0;    ///< s, last
-  std::string bound;       ///< what limits it
+  double time_step = 0;  ///< s, last
+  std::string bound;     ///< what limits it
   std::size_t frames = 0;
   double eta_s = 0;
 };
@@ -78,29 +78,29 @@ struct Ledger {
   std::array<double, 3> momentum_change{};            ///< N·s, Σ m v now less at the start
   std::array<double, 3> impulse_gravity{}, impulse_walls{}, impulse_loads{};  ///< N·s
   std::array<double, 3> impulse_surface{};  ///< N·s, to drops that the water surface carries along
-  double momentum_residual = 0;   ///< |change − Σ impulses| / ∫|weight| dt
+  double momentum_residual = 0;             ///< |change − Σ impulses| / ∫|weight| dt
   double energy_kinetic = 0, energy_potential = 0, energy_strain = 0;  ///< J
-  long clipped_points = 0;        ///< positions put back in front of a wall
+  long clipped_points = 0;  ///< positions put back in front of a wall
   long clamped_values = 0;
   long deleted_points = 0;
-  long cut_steps = 0;             ///< steps repeated with a smaller time step
+  long cut_steps = 0;  ///< steps repeated with a smaller time step
 };
 
 /// Headline figures of a watched body (Output::heave).
 struct HeaveReport {
   bool moved = false;
-  double time = 0;               ///< s, when the mean rise passed the threshold
-  double head_difference = 0;    ///< m, between the probes at that time (else: largest seen)
-  double gradient = 0;           ///< –, head difference over the distance of the probes
-  double critical_gradient = 0;  ///< –, (1−n)(ρs/ρw − 1)
+  double time = 0;                      ///< s, when the mean rise passed the threshold
+  double head_difference = 0;           ///< m, between the probes at that time (else: largest seen)
+  double gradient = 0;                  ///< –, head difference over the distance of the probes
+  double critical_gradient = 0;         ///< –, (1−n)(ρs/ρw − 1)
   double final_rise = 0, max_rise = 0;  ///< m, mean upward movement of the body
   double max_point_displacement = 0;    ///< m
 };
 
 struct Failure {
-  std::string code;     ///< "diverged", "output", "internal"
-  std::string message;  ///< when, where, which phase, likely cause, what to change
-  double time = 0;      ///< s
+  std::string code;               ///< "diverged", "output", "internal"
+  std::string message;            ///< when, where, which phase, likely cause, what to change
+  double time = 0;                ///< s
   std::array<double, 3> place{};  ///< m
 };
 

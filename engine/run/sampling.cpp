@@ -47,7 +47,8 @@ double pressure_at(const State<D>& s, const Vec<D>& x) {
   for (int d = 0; d < D; ++d)
     for (int side : {0, 1}) {
       const int face = cell + side * s.grid.stride[d], other = cell + (2 * side - 1) * s.grid.stride[d];
-      if (!s.water_walls.closed(d, face) && s.cell[other].unknown >= 0) p = std::max(p, from_wet_cell<D>(s, other, x));
+      if (!s.water_walls.closed(d, face) && s.cell[other].unknown >= 0)
+        p = std::max(p, from_wet_cell<D>(s, other, x));
     }
   return p;
 }
@@ -56,7 +57,8 @@ template <int D>
 double head_at(const State<D>& s, const Vec<D>& x, double pressure) {
   constexpr double kStandardGravity = 9.81;  // m/s², for scenes without gravity
   double g2 = 0, along = 0;
-  for (int d = 0; d < D; ++d) g2 += s.constants.gravity[d] * s.constants.gravity[d], along -= s.constants.gravity[d] * x[d];
+  for (int d = 0; d < D; ++d)
+    g2 += s.constants.gravity[d] * s.constants.gravity[d], along -= s.constants.gravity[d] * x[d];
   const double g = std::sqrt(g2);
   return g > 0 ? along / g + pressure / (s.constants.water_density * g)
                : pressure / (s.constants.water_density * kStandardGravity);

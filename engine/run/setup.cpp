@@ -98,8 +98,8 @@ void enter_stage(const Scene& scene, const Stage& stage, State<D>& s) {
   for (std::size_t i = 0, k = 0; i < scene.loads.size(); ++i) {
     if (scene.loads[i].kind != Load::Kind::traction) continue;
     SurfaceLoad<D>& load = s.loads[k++];
-    const bool acts = !stage.loads || std::find(stage.loads->begin(), stage.loads->end(), scene.loads[i].name) !=
-                                          stage.loads->end();
+    const bool acts = !stage.loads || std::find(stage.loads->begin(), stage.loads->end(),
+                                                scene.loads[i].name) != stage.loads->end();
     if (acts && !load.active) load.start = s.time;
     load.active = acts;
   }

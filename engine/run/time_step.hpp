@@ -8,8 +8,8 @@ namespace quicksand {
 
 /// What is known of the moving state when a step is chosen.
 struct StepSituation {
-  double soil_limit = 0;   ///< s, smallest stability bound of any soil point; infinite without soil
-  double max_speed = 0;    ///< m/s
+  double soil_limit = 0;  ///< s, smallest stability bound of any soil point; infinite without soil
+  double max_speed = 0;   ///< m/s
 };
 
 /// All bounds of the next time step, before the scene's safety factor; each with its name:

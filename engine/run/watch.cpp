@@ -73,7 +73,8 @@ void append_probe(const State<D>& s, const Probe& probe, std::vector<double>& ou
   } else if (probe.quantity == "porosity") {
     out.push_back(porosity_at<D>(s, x));
   } else {
-    const Vec<D> v = probe.quantity == "soil_velocity" ? soil_velocity_at<D>(s, x) : water_velocity_at<D>(s, x);
+    const Vec<D> v =
+        probe.quantity == "soil_velocity" ? soil_velocity_at<D>(s, x) : water_velocity_at<D>(s, x);
     for (int d = 0; d < 3; ++d) out.push_back(d < D ? v[d] : 0);
   }
 }
@@ -83,7 +84,8 @@ void append_probe(const State<D>& s, const Probe& probe, std::vector<double>& ou
 template <int D>
 Watch<D>::Watch(const Scene& scene) : scene_(scene) {
   for (std::size_t b = 0; b < scene.bodies.size(); ++b)
-    if (scene.bodies[b].kind != BodyKind::water && !scene.bodies[b].fixed) moving_soil_.push_back(static_cast<int>(b));
+    if (scene.bodies[b].kind != BodyKind::water && !scene.bodies[b].fixed)
+      moving_soil_.push_back(static_cast<int>(b));
   if (!scene.output.heave) return;
   HeaveReport report;
   for (const Body& body : scene.bodies)
@@ -137,14 +139,14 @@ std::vector<double> Watch<D>::sample(const State<D>& s, const StepReport<D>& ste
     out.push_back(r.largest);
   }
   const double energy = l.energy_kinetic + l.energy_potential + l.energy_strain;
-  out.insert(out.end(), {l.water_volume, l.water_mass, l.solid_mass, energy, l.energy_kinetic, l.energy_potential,
-                         l.energy_strain});
+  out.insert(out.end(), {l.water_volume, l.water_mass, l.solid_mass, energy, l.energy_kinetic,
+                         l.energy_potential, l.energy_strain});
   for (int d = 0; d < 3; ++d) out.push_back(d < D ? step.momentum[d] : 0);
   for (const auto* impulse : {&l.impulse_gravity, &l.impulse_walls, &l.impulse_surface, &l.impulse_loads})
     out.insert(out.end(), impulse->begin(), impulse->end());
   out.insert(out.end(), {static_cast<double>(l.clipped_points), static_cast<double>(l.clamped_values),
-                         static_cast<double>(l.cut_steps), step.dt, static_cast<double>(step.pressure.iterations),
-                         step.max_speed, step.max_soil_speed});
+                         static_cast<double>(l.cut_steps), step.dt,
+                         static_cast<double>(step.pressure.iterations), step.max_speed, step.max_soil_speed});
   sample_heave(s);
   return out;
 }
@@ -175,7 +177,9 @@ void Watch<D>::sample_heave(const State<D>& s) {
     const Vec<D> u = up<D>(s.constants.gravity);
     for (const Probe& probe : scene_.output.probes)
       for (int d = 0; d < D; ++d)
-        distance += probe.name == watch.above ? u[d] * probe.at[d] : probe.name == watch.below ? -u[d] * probe.at[d] : 0;
+        distance += probe.name == watch.above   ? u[d] * probe.at[d]
+                    : probe.name == watch.below ? -u[d] * probe.at[d]
+                                                : 0;
     report.head_difference = difference;
     report.gradient = difference / distance;
     report.moved = moved;

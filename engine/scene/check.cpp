@@ -62,6 +62,7 @@ void check_supported(const Scene& scene, Faults& faults) {
     const Stage& stage = scene.stages[k];
     refuse(!stage.heads.empty(), at_index("stages", k, "/heads"), "a change of heads");
     refuse(!stage.remove_bodies.empty(), at_index("stages", k, "/remove_bodies"), "removing bodies");
+    refuse(stage.damping > 0, at_index("stages", k, "/damping"), "damping");
     refuse(stage.quasi_static, at_index("stages", k, "/quasi_static"), "quasi_static");
   }
   refuse(!scene.output.sections.empty(), "/output/sections", "a section");

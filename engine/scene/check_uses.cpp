@@ -71,6 +71,17 @@ void check_materials(const Scene& scene, Faults& faults) {
     faults.push_back({"/initial/water_table", "has no effect without gravity: remove it"});
   if (weightless && scene.initial.k0)
     faults.push_back({"/initial/k0", "has no effect without gravity: remove it"});
+  const bool moving_soil = std::any_of(scene.bodies.begin(), scene.bodies.end(), [](const Body& body) {
+    return body.kind != BodyKind::water && !body.fixed;
+  });
+  const int down = scene.domain.dimension == Dimension::space ? 2 : 1;
+  for (int axis = 0; axis < 3; ++axis)
+    if (axis != down && scene.gravity[axis] != 0 && moving_soil &&
+        scene.initial.stress == InitialStress::k0) {
+      faults.push_back(
+          {"/initial/stress", "k0 needs gravity along the vertical axis only: use zero or uniform"});
+      break;
+    }
 }
 
 }  // namespace quicksand

@@ -24,9 +24,9 @@ struct Side {
 
 struct Domain {
   Dimension dimension = Dimension::plane_strain;
-  Vec3 min{0, 0, 0};      ///< m
-  Vec3 max{1, 1, 1};      ///< m
-  double cell_size = 0;   ///< m, at `numerics.cell_size_factor` 1 (the standard preset)
+  Vec3 min{0, 0, 0};            ///< m
+  Vec3 max{1, 1, 1};            ///< m
+  double cell_size = 0;         ///< m, at `numerics.cell_size_factor` 1 (the standard preset)
   std::array<Side, 6> sides{};  ///< left right bottom top front back (−x +x −y +y −z +z)
 };
 
@@ -40,43 +40,43 @@ struct Permeability {
 enum class SoilLaw { linear_elastic, mohr_coulomb, modified_cam_clay };
 struct SoilModel {
   SoilLaw law = SoilLaw::linear_elastic;
-  double young_modulus = 0;       ///< Pa
-  double poisson_ratio = 0;       ///< –
-  double friction_angle = 0;      ///< degrees
-  double dilation_angle = 0;      ///< degrees
-  double cohesion = 0;            ///< Pa
+  double young_modulus = 0;              ///< Pa
+  double poisson_ratio = 0;              ///< –
+  double friction_angle = 0;             ///< degrees
+  double dilation_angle = 0;             ///< degrees
+  double cohesion = 0;                   ///< Pa
   std::optional<double> tension_cutoff;  ///< Pa, largest tension; absent: the cone's apex
 };
 
 struct Soil {
-  double grain_density = 2650;  ///< kg/m³
-  double porosity = 0.4;        ///< –, initial
+  double grain_density = 2650;         ///< kg/m³
+  double porosity = 0.4;               ///< –, initial
   std::optional<double> max_porosity;  ///< –, grains lose contact above it
   Permeability permeability;
   SoilModel model;
 };
 
 struct Water {
-  double density = 1000;              ///< kg/m³
+  double density = 1000;                       ///< kg/m³
   std::optional<double> bulk_modulus = 2.2e9;  ///< Pa; absent: incompressible
-  double viscosity = 1e-3;            ///< Pa·s, of free water
+  double viscosity = 1e-3;                     ///< Pa·s, of free water
 };
 
 /// A set of places, in metres. `polygon` and `disc` are extruded along z in space.
 struct Region {
   enum class Kind { box, polygon, disc, union_of, difference } kind = Kind::box;
-  Vec3 min{}, max{};                           ///< box
-  std::vector<std::array<double, 2>> vertices; ///< polygon, either orientation
-  Vec3 center{};                               ///< disc
-  double radius = 0;                           ///< disc
-  std::vector<Region> parts;                   ///< union_of: all; difference: the first less all others
+  Vec3 min{}, max{};                            ///< box
+  std::vector<std::array<double, 2>> vertices;  ///< polygon, either orientation
+  Vec3 center{};                                ///< disc
+  double radius = 0;                            ///< disc
+  std::vector<Region> parts;                    ///< union_of: all; difference: the first less all others
 };
 
 enum class BodyKind { soil, saturated_soil, water };
 struct Body {
   std::string name;
   BodyKind kind = BodyKind::water;
-  std::string soil;    ///< key into Scene::soils; not for water
+  std::string soil;  ///< key into Scene::soils; not for water
   Region region;
   bool fixed = false;  ///< grains are held in place and cannot be entered by other grains
   Vec3 velocity{};     ///< m/s, initial
@@ -89,7 +89,7 @@ struct Segment {
 /// A solid block or a wall of no thickness on cell faces.
 struct Wall {
   std::string name;
-  std::optional<Region> block;    ///< box
+  std::optional<Region> block;  ///< box
   std::optional<Segment> line;
   bool no_slip = false;
 };
@@ -114,7 +114,7 @@ struct Initial {
   std::optional<double> water_table;  ///< m; absent: each connected water's own surface
   double uniform_pressure = 0;        ///< Pa, excess over zero everywhere
   InitialStress stress = InitialStress::k0;
-  std::optional<double> k0;           ///< –; absent: 1 − sin φ (Jaky), or ν/(1−ν) for elastic soil
+  std::optional<double> k0;  ///< –; absent: 1 − sin φ (Jaky), or ν/(1−ν) for elastic soil
   std::array<double, 6> uniform_stress{};  ///< Pa, xx yy zz xy yz zx, effective
 };
 
@@ -123,28 +123,28 @@ struct Load {
   enum class Kind { traction, plate } kind = Kind::traction;
   std::string name;
   std::string body;
-  Vec3 traction{};        ///< Pa, per horizontal area
-  double ramp = 0;        ///< s, linear rise from the start of the stage that sets it
-  Vec3 plate_velocity{};  ///< m/s
+  Vec3 traction{};                  ///< Pa, per horizontal area
+  double ramp = 0;                  ///< s, linear rise from the start of the stage that sets it
+  Vec3 plate_velocity{};            ///< m/s
   std::optional<Vec3> plate_force;  ///< N/m
   Segment plate;
   bool rough = false;
 };
 
 struct UntilRest {
-  double speed = 1e-4;   ///< m/s, largest speed of any point
-  double at_least = 0;   ///< s
+  double speed = 1e-4;  ///< m/s, largest speed of any point
+  double at_least = 0;  ///< s
 };
 
 struct Stage {
   std::string name;
-  double duration = 0;                    ///< s; with until_rest: at most
+  double duration = 0;  ///< s; with until_rest: at most
   std::optional<UntilRest> until_rest;
-  std::vector<std::string> open_gates;    ///< all others are closed
-  std::map<std::string, double> heads;    ///< reservoir → m
+  std::vector<std::string> open_gates;            ///< all others are closed
+  std::map<std::string, double> heads;            ///< reservoir → m
   std::optional<std::vector<std::string>> loads;  ///< acting in this stage; absent: all
   std::vector<std::string> remove_bodies;
-  double damping = 0;        ///< –, fraction of the out-of-balance force (local damping)
+  double damping = 0;  ///< –, fraction of the out-of-balance force (local damping)
   bool quasi_static = false;
 };
 
@@ -161,13 +161,13 @@ struct Section {
 /// Asks for the headline figures of a heave: when the body moved and the gradient then.
 struct HeaveWatch {
   std::string body;
-  double threshold = 5e-4;  ///< m, mean upward movement that counts as heave
-  std::string below, above; ///< head probes at the body's lower and upper face
+  double threshold = 5e-4;   ///< m, mean upward movement that counts as heave
+  std::string below, above;  ///< head probes at the body's lower and upper face
 };
 struct Output {
-  double frame_interval = 0.1;       ///< s
-  double series_interval = 0.01;     ///< s
-  std::vector<std::string> fields;   ///< empty: all
+  double frame_interval = 0.1;      ///< s
+  double series_interval = 0.01;    ///< s
+  std::vector<std::string> fields;  ///< empty: all
   std::vector<Probe> probes;
   std::vector<Section> sections;
   std::optional<HeaveWatch> heave;
@@ -179,16 +179,16 @@ enum class Transfer { flip, apic };
 enum class PressureScheme { implicit, explicit_scheme };
 struct Numerics {
   Preset preset = Preset::standard;
-  double cell_size_factor = 1;        ///< –, multiplies domain.cell_size (draft 2, fine ½)
-  int points_per_cell = 2;            ///< per axis
+  double cell_size_factor = 1;  ///< –, multiplies domain.cell_size (draft 2, fine ½)
+  int points_per_cell = 2;      ///< per axis
   Kernel kernel = Kernel::quadratic;
   Transfer transfer = Transfer::flip;
-  double pic_rate = 5;                ///< 1/s, rate at which a point's velocity relaxes to the grid's
+  double pic_rate = 5;  ///< 1/s, rate at which a point's velocity relaxes to the grid's
   PressureScheme pressure = PressureScheme::implicit;
-  double pressure_tolerance = 1e-6;   ///< –, see engine/step/pressure.hpp
-  std::optional<double> time_step;    ///< s; absent: chosen each step
-  double time_step_factor = 0.8;      ///< –, of the stability bound
-  double drift_time = 0.05;           ///< s, over which true volume drift is fed back; 0: never
+  double pressure_tolerance = 1e-6;  ///< –, see engine/step/pressure.hpp
+  std::optional<double> time_step;   ///< s; absent: chosen each step
+  double time_step_factor = 0.8;     ///< –, of the stability bound
+  double drift_time = 0.05;          ///< s, over which true volume drift is fed back; 0: never
   long max_steps = 100'000'000;
 };
 

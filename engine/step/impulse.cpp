@@ -35,7 +35,8 @@ double water_reaction(const State<D>& s, int d, int face, double dt) {
   const double mirrored = -s.image[d][face].water * (f.water - f.water_old);
   if (f.wet != 1) return mirrored;  // in the air: falls, or is carried along by the surface
   const double rho = s.constants.water_density;
-  return mirrored - dt * sums.water_mass / rho * (pressure_gradient(s, d, face) + f.fixed_drag * f.water / f.n);
+  return mirrored -
+         dt * sums.water_mass / rho * (pressure_gradient(s, d, face) + f.fixed_drag * f.water / f.n);
 }
 
 /// Drops above the last wet face move with the water below them instead of falling through it.
@@ -52,7 +53,8 @@ template <int D>
 struct Sum {
   Vec<D> reaction{}, surface{}, grid{};  ///< grid: Σ M v of the old grid velocities
   Sum& operator+=(const Sum& o) {
-    for (int d = 0; d < D; ++d) reaction[d] += o.reaction[d], surface[d] += o.surface[d], grid[d] += o.grid[d];
+    for (int d = 0; d < D; ++d)
+      reaction[d] += o.reaction[d], surface[d] += o.surface[d], grid[d] += o.grid[d];
     return *this;
   }
 };

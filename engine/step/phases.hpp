@@ -63,9 +63,11 @@ inline constexpr double kMaxPorosity = 0.999;
 /// Faces with less than this part of a full face's mass carry no velocity of their own.
 inline constexpr double kMassCutoff = 1e-10;
 
-/// Part of the way from a wet cell's centre to the next one's where the water surface lies; kept above
-/// this so that a surface just touching a centre does not make a stiff row.
+/// A cell has pressure where the water surface lies at least this far (cells) above its centre: one that just
+/// touches the centre would make a stiff row and flicker by rounding. Below, the surface lies a little beyond
+/// the next centre instead.
 inline constexpr double kMinSurfaceDistance = 0.05;
+/// Part of the way from a wet cell's centre to that of an air cell where p = 0.
 inline double surface_distance(double depth_wet, double depth_air) {
   return std::max(kMinSurfaceDistance, depth_wet / (depth_wet - depth_air));
 }

@@ -15,7 +15,8 @@ constexpr double kDriftLimit = 0.2;
 
 double drift_rate(double excess, double drift_time) {
   if (drift_time <= 0) return 0;
-  const double beyond = excess > 0 ? std::max(0.0, excess - kDriftDeadBand) : std::min(0.0, excess + kDriftDeadBand);
+  const double beyond =
+      excess > 0 ? std::max(0.0, excess - kDriftDeadBand) : std::min(0.0, excess + kDriftDeadBand);
   return std::clamp(beyond, -kDriftLimit, kDriftLimit) / drift_time;
 }
 

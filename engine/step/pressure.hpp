@@ -6,7 +6,7 @@ namespace quicksand {
 struct PressureReport {
   int unknowns = 0;
   int iterations = 0;
-  double residual = 0;     ///< largest |residual| over largest |right-hand side|
+  double residual = 0;  ///< largest |residual| over largest |right-hand side|
   bool converged = true;
 };
 

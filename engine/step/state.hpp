@@ -28,7 +28,8 @@ struct FaceSums {
   double water_momentum = 0;  ///< kg·m/s
 };
 
-/// Twice the mass that reached a face as a mirror image with its sign changed: what walls hold of its momentum.
+/// Twice the mass that reached a face as a mirror image with its sign changed: what walls hold of its
+/// momentum.
 struct FaceImage {
   double soil = 0, water = 0;  ///< kg
 };
@@ -41,15 +42,15 @@ struct FixedFace {
 
 /// Velocities of a face and how they answer to a pressure gradient G: v = v̂ − response·G.
 struct FaceFlow {
-  double soil_old = 0, soil = 0;    ///< m/s
-  double water_old = 0, water = 0;  ///< m/s
+  double soil_old = 0, soil = 0;                 ///< m/s
+  double water_old = 0, water = 0;               ///< m/s
   double soil_response = 0, water_response = 0;  ///< m/s per Pa/m
-  double phi = 0, n = 1;            ///< –, moving grains; room for water
-  std::uint8_t wet = 0;             ///< 1: a side has pressure; 2, 3: extrapolated from such
-  bool soil_held = false;           ///< grains are in contact with a wall here
+  double phi = 0, n = 1;                         ///< –, moving grains; room for water
+  std::uint8_t wet = 0;                          ///< 1: a side has pressure; 2, 3: extrapolated from such
+  bool soil_held = false;                        ///< grains are in contact with a wall here
 
-  double drag = 0;                ///< N·s/m⁴ per cell volume, between the phases
-  double fixed_drag = 0;          ///< N·s/m⁴ on the water, of grains that do not move
+  double drag = 0;        ///< N·s/m⁴ per cell volume, between the phases
+  double fixed_drag = 0;  ///< N·s/m⁴ on the water, of grains that do not move
 
   double flux() const { return phi * soil + n * water; }
   double flux_response() const { return phi * soil_response + n * water_response; }
@@ -60,11 +61,11 @@ struct CellSums {
 };
 
 struct CellState {
-  double fill = 0;      ///< –, part of a kernel's volume below the water surface
-  double depth = -1.5;  ///< cells from the water surface, positive in water, within ±1.5
-  double excess = 0;    ///< –, volume of water and grains beyond the room, where fully wet
-  double n = 1;         ///< –, room for water
-  int unknown = -1;     ///< row in the pressure system; −1: air or wall
+  double fill = 0;        ///< –, part of a kernel's volume below the water surface
+  double depth = -1.5;    ///< cells from the water surface, positive in water, within ±1.5
+  double excess = 0;      ///< –, volume of water and grains beyond the room, where fully wet
+  double n = 1;           ///< –, room for water
+  int unknown = -1;       ///< row in the pressure system; −1: air or wall
   bool confined = false;  ///< wet, and no air in the cells around
 };
 
@@ -84,13 +85,13 @@ struct Interventions {
 /// Constants of a run.
 template <int D>
 struct Constants {
-  Vec<D> gravity{};            ///< m/s²
-  double water_density = 1000; ///< kg/m³
-  double water_compliance = 0; ///< 1/Pa, 1/Kw; 0: incompressible
-  double viscosity = 0;        ///< Pa·s
-  double pic_rate = 0;         ///< 1/s
+  Vec<D> gravity{};             ///< m/s²
+  double water_density = 1000;  ///< kg/m³
+  double water_compliance = 0;  ///< 1/Pa, 1/Kw; 0: incompressible
+  double viscosity = 0;         ///< Pa·s
+  double pic_rate = 0;          ///< 1/s
   double pressure_tolerance = 1e-6;
-  double drift_time = 0;       ///< s; 0: no feedback
+  double drift_time = 0;  ///< s; 0: no feedback
   std::vector<SoilMaterial> soils;
   std::vector<StepLimit> step_limits;  ///< per soil
 };
@@ -106,7 +107,8 @@ struct SurfaceLoad {
 
 /// Parts of a step whose wall time is kept.
 enum class Phase { to_grid, surface, velocities, pressure, to_points };
-inline constexpr std::array<const char*, 5> kPhaseNames{"to grid", "surface", "velocities", "pressure", "to points"};
+inline constexpr std::array<const char*, 5> kPhaseNames{"to grid", "surface", "velocities", "pressure",
+                                                        "to points"};
 
 template <int D>
 struct State {
@@ -116,8 +118,8 @@ struct State {
   Walls<D> soil_walls;   ///< the same and the surfaces of fixed soil
   Constants<D> constants;
 
-  SoilPoints<D> soil;    ///< moving grains
-  SoilPoints<D> fixed;   ///< grains held in place
+  SoilPoints<D> soil;   ///< moving grains
+  SoilPoints<D> fixed;  ///< grains held in place
   WaterPoints<D> water;
   BlockList soil_blocks, water_blocks;
   std::vector<SurfaceLoad<D>> loads;
@@ -133,8 +135,8 @@ struct State {
   std::vector<double> pressure_old;  ///< Pa, at the start of the step
   PressureSystem<D> pressure_system;
 
-  double time = 0;     ///< s
-  Vec<D> momentum{};   ///< N·s, Σ m v of all moving points
+  double time = 0;      ///< s
+  Vec<D> momentum{};    ///< N·s, Σ m v of all moving points
   Vec<D> load_force{};  ///< N, of the surface loads in this step
   Interventions interventions;
   std::array<double, kPhaseNames.size()> phase_seconds{};  ///< wall time

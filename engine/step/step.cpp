@@ -45,24 +45,24 @@ template <int D>
 StepReport<D> advance(State<D>& s, double dt) {
   StepReport<D> report;
   Stopwatch clock(s.phase_seconds);
-  points_to_faces(s);                           // 1. masses, momenta, forces on the faces
+  points_to_faces(s);  // 1. masses, momenta, forces on the faces
   clock.lap(Phase::to_grid);
-  find_surface(s);                              // 2. which cells have pressure, where it is zero
+  find_surface(s);  // 2. which cells have pressure, where it is zero
   clock.lap(Phase::surface);
   s.pressure_old = s.pressure;
   while (true) {
-    predict_velocities(s, dt);                  // 3. both momentum balances, drag inside
+    predict_velocities(s, dt);  // 3. both momentum balances, drag inside
     clock.lap(Phase::velocities);
-    report.pressure = solve_pressure(s, dt);    // 4. mass balance of the mixture
+    report.pressure = solve_pressure(s, dt);  // 4. mass balance of the mixture
     clock.lap(Phase::pressure);
-    correct_velocities(s);                      // 5. velocities that keep it
+    correct_velocities(s);  // 5. velocities that keep it
     if (!travels_too_far(s, dt)) break;
     dt *= 0.5;
     s.pressure = s.pressure_old;
     ++s.interventions.cut_steps;
   }
   clock.lap(Phase::velocities);
-  faces_to_points(s, dt, report);               // 6. strain, stress, porosity, positions
+  faces_to_points(s, dt, report);  // 6. strain, stress, porosity, positions
   clock.lap(Phase::to_points);
   s.time += dt;
   report.dt = dt;

@@ -8,14 +8,14 @@ namespace quicksand {
 template <int D>
 struct StepReport {
   PressureReport pressure;
-  double max_speed = 0;               ///< m/s, of any point
-  double max_soil_speed = 0;          ///< m/s
-  Vec<D> momentum{};                  ///< N·s, Σ m v of all points after the step
-  double moving_mass = 0;             ///< kg, of all points that move
+  double max_speed = 0;                                        ///< m/s, of any point
+  double max_soil_speed = 0;                                   ///< m/s
+  Vec<D> momentum{};                                           ///< N·s, Σ m v of all points after the step
+  double moving_mass = 0;                                      ///< kg, of all points that move
   Vec<D> impulse_walls{}, impulse_surface{}, impulse_loads{};  ///< N·s in this step
-  double kinetic = 0, strain = 0;     ///< J
-  double soil_limit = 0;              ///< s, smallest stable step of any soil point; infinite without
-  double dt = 0;                      ///< s, of the step that was taken
+  double kinetic = 0, strain = 0;                              ///< J
+  double soil_limit = 0;  ///< s, smallest stable step of any soil point; infinite without
+  double dt = 0;          ///< s, of the step that was taken
   bool finite = true;
 };
 

@@ -34,7 +34,7 @@ void find_surface(State<D>& s) {
       c.n = std::max(1 - sums.grains / volume, kMinRoom);
       c.fill = fill_of(sums.water / volume, sums.grains / volume, sums.soil_bulk / volume);
       c.depth = depth_of_fill(c.fill);
-      c.unknown = c.depth > 0 ? 0 : -1;
+      c.unknown = c.depth > kMinSurfaceDistance ? 0 : -1;
       if (c.unknown < 0) s.pressure[i] = 0;
     });
   });

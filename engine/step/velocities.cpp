@@ -27,11 +27,11 @@ constexpr double kLeastWetPart = 0.1;
 
 /// Momentum balance of one face, per unit volume, before the pressure gradient.
 struct Balance {
-  double soil_mass = 0, soil_momentum = 0;    ///< kg/m³; incl. dt × forces
+  double soil_mass = 0, soil_momentum = 0;  ///< kg/m³; incl. dt × forces
   double water_mass = 0, water_momentum = 0;
-  double drag = 0;                            ///< dt × R on the grains, kg/m³
-  double water_drag = 0;                      ///< the same on the water; see below
-  double fixed_drag = 0;                      ///< dt × R of grains that do not move
+  double drag = 0;        ///< dt × R on the grains, kg/m³
+  double water_drag = 0;  ///< the same on the water; see below
+  double fixed_drag = 0;  ///< dt × R of grains that do not move
 };
 
 /// Implicit drag: [FMS19] eqs. (1) and (2) as one 2×2 system, solved for v̂ and for the response to G.
@@ -157,7 +157,8 @@ bool extrapolate(const State<D>& s, int d, int face, std::uint8_t level, double&
     for (int other : {face - s.grid.stride[a], face + s.grid.stride[a]}) {
       const FaceFlow& o = s.flow[d][other];
       // Faces of this level may be written meanwhile; their flag is then ≥ level or still 0.
-      const std::uint8_t wet = std::atomic_ref(const_cast<std::uint8_t&>(o.wet)).load(std::memory_order_relaxed);
+      const std::uint8_t wet =
+          std::atomic_ref(const_cast<std::uint8_t&>(o.wet)).load(std::memory_order_relaxed);
       if (wet == 0 || wet >= level || s.water_walls.closed(d, other)) continue;
       sum += o.water;
       ++count;

@@ -44,7 +44,7 @@ inline const std::string& heave_case() {
   "initial": {"k0": 0.5},
   "loads": [{"name": "cover", "kind": "traction", "body": "sand", "traction": [0, -100], "ramp": 0.1}],
   "stages": [
-    {"name": "settle", "duration": 0.5, "until_rest": {"speed": 1e-4}, "loads": [], "damping": 0.2},
+    {"name": "settle", "duration": 0.5, "until_rest": {"speed": 1e-4}, "loads": []},
     {"name": "heave", "duration": 2, "open_gates": ["valve"]}
   ],
   "output": {
