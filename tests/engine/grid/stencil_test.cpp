@@ -1,0 +1,153 @@
+#include "engine/grid/stencil.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+namespace quicksand {
+namespace {
+
+/// Centre of face `face` of component d, m.
+template <int D>
+Vec<D> face_place(const Grid<D>& grid, int d, int face) {
+  Vec<D> x = grid.center(grid.cell(face));
+  x[d] -= 0.5 * grid.h;
+  return x;
+}
+
+template <int D>
+Grid<D> some_grid() {
+  Vec<D> low;
+  Cell<D> count;
+  for (int d = 0; d < D; ++d) low[d] = 0.3 - d, count[d] = 6 + d;
+  return Grid<D>(low, count, 0.2);
+}
+
+/// Random places of a domain whose walls are all open.
+template <int D, class F>
+void at_random_places(const Grid<D>& grid, int count, F&& f) {
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> part(0, 1);
+  for (int i = 0; i < count; ++i) {
+    Vec<D> x;
+    for (int d = 0; d < D; ++d) x[d] = grid.origin[d] + part(random) * grid.cells[d] * grid.h;
+    f(x);
+  }
+}
+
+template <int D>
+void expect_moments() {
+  const Grid<D> grid = some_grid<D>();
+  const Walls<D> open(grid);
+  at_random_places(grid, 300, [&](const Vec<D>& x) {
+    const PointKernel<D> kernel(grid, x);
+    for (int d = 0; d < D; ++d) {
+      double sum = 0;
+      Vec<D> mean{}, gradient_sum{};
+      std::array<Vec<D>, D> slope{};
+      for_faces(grid, open, kernel, d, [&](int face, double w, double sign, const Vec<D>& g) {
+        const Vec<D> at = face_place(grid, d, face);
+        EXPECT_GE(w, 0);
+        EXPECT_EQ(sign, 1);
+        sum += w;
+        for (int a = 0; a < D; ++a) {
+          mean[a] += w * at[a];
+          gradient_sum[a] += g[a];
+          for (int b = 0; b < D; ++b) slope[a][b] += g[a] * at[b];
+        }
+      });
+      EXPECT_NEAR(sum, 1, 1e-14);
+      for (int a = 0; a < D; ++a) {
+        EXPECT_NEAR(mean[a], x[a], 1e-13);
+        EXPECT_NEAR(gradient_sum[a], 0, 1e-12);
+        for (int b = 0; b < D; ++b) EXPECT_NEAR(slope[a][b], a == b, 1e-12);  // linear fields exactly
+      }
+    }
+    double sum = 0;
+    Vec<D> mean{};
+    for_centers(grid, open, kernel, [&](int cell, double w) {
+      sum += w;
+      for (int a = 0; a < D; ++a) mean[a] += w * grid.center(grid.cell(cell))[a];
+    });
+    EXPECT_NEAR(sum, 1, 1e-14);
+    for (int a = 0; a < D; ++a) EXPECT_NEAR(mean[a], x[a], 1e-13);
+  });
+}
+
+TEST(Stencil, WeightsSumToOneWithTheirMeanAtThePoint2D) { expect_moments<2>(); }
+TEST(Stencil, WeightsSumToOneWithTheirMeanAtThePoint3D) { expect_moments<3>(); }
+
+/// A smooth function of the face's index, so that the interpolated field is not linear.
+template <int D>
+double field(const Grid<D>& grid, const Walls<D>& walls, const Vec<D>& x, int d, Vec<D>* gradient = nullptr) {
+  double value = 0;
+  const PointKernel<D> kernel(grid, x);
+  for_faces(grid, walls, kernel, d, [&](int face, double w, double sign, const Vec<D>& g) {
+    const double v = std::sin(1.7 * face);
+    value += sign * w * v;
+    if (gradient)
+      for (int a = 0; a < D; ++a) (*gradient)[a] += sign * g[a] * v;
+  });
+  return value;
+}
+
+template <int D>
+void expect_gradient_is_the_derivative(const Walls<D>& walls, const Grid<D>& grid) {
+  constexpr double kStep = 1e-6;  // m; central differences of a quadratic are exact but for rounding
+  int checked = 0;
+  at_random_places(grid, 200, [&](const Vec<D>& x) {
+    for (int a = 0; a < D; ++a) {  // not across a closed face, where the sign of the mirror may jump
+      const double xi = (x[a] - grid.origin[a]) * grid.inverse_h;
+      if (std::abs(xi - std::round(xi)) < 1e-3) return;
+    }
+    ++checked;
+    for (int d = 0; d < D; ++d) {
+      Vec<D> gradient{};
+      field<D>(grid, walls, x, d, &gradient);
+      for (int a = 0; a < D; ++a) {
+        Vec<D> low = x, high = x;
+        low[a] -= kStep, high[a] += kStep;
+        const double slope = (field<D>(grid, walls, high, d) - field<D>(grid, walls, low, d)) / (2 * kStep);
+        EXPECT_NEAR(gradient[a], slope, 2e-4);  // crossing a knot leaves O(step/h²)
+      }
+    }
+  });
+  EXPECT_GT(checked, 150);
+}
+
+TEST(Stencil, GradientIsTheDerivativeOfTheWeights2D) {
+  const Grid<2> grid = some_grid<2>();
+  expect_gradient_is_the_derivative(Walls<2>(grid), grid);
+}
+TEST(Stencil, GradientIsTheDerivativeOfTheWeights3D) {
+  const Grid<3> grid = some_grid<3>();
+  expect_gradient_is_the_derivative(Walls<3>(grid), grid);
+}
+
+TEST(Stencil, GradientIsTheDerivativeOfTheFoldedWeightsToo) {
+  const Grid<2> grid = some_grid<2>();
+  Walls<2> walls(grid);
+  for (int y = 0; y < grid.cells[1]; ++y) walls.close(0, grid.index({3, y}), y % 2 == 0);
+  for (int x = 0; x < grid.cells[0]; ++x) walls.close(1, grid.index({x, 0}), false);
+  walls.rebuild(grid);
+  expect_gradient_is_the_derivative(walls, grid);
+}
+
+TEST(Stencil, FieldIsContinuousBetweenCells) {
+  const Grid<2> grid = some_grid<2>();
+  const Walls<2> open(grid);
+  constexpr double kGap = 1e-9;
+  for (int d = 0; d < 2; ++d)
+    for (int axis = 0; axis < 2; ++axis) {
+      Vec<2> x = {grid.origin[0] + 0.47, grid.origin[1] + 0.71};
+      for (const double knot : {0.4, 0.5}) {  // cell border, cell centre
+        x[axis] = grid.origin[axis] + knot - kGap;
+        const double before = field<2>(grid, open, x, d);
+        x[axis] = grid.origin[axis] + knot + kGap;
+        EXPECT_NEAR(field<2>(grid, open, x, d), before, 1e-6);
+      }
+    }
+}
+
+}  // namespace
+}  // namespace quicksand
