@@ -1,0 +1,102 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "engine/materials/stability.hpp"
+#include "tests/engine/small_scene.hpp"
+
+namespace quicksand {
+namespace {
+
+constexpr double kGravity = 9.81;  // m/s², of the definition of hydraulic conductivity
+
+TEST(Drag, DarcyWithConstantPermeability) {
+  Soil soil = test::sand();
+  soil.permeability.law = PermeabilityLaw::constant;
+  const Drag drag = Drag::from(soil, {});
+  EXPECT_NEAR(drag.resistance(0.4), 0.16 * 1000 * kGravity / 1e-4, 1e-3);
+  EXPECT_NEAR(drag.resistance(0.5), 0.25 * 1000 * kGravity / 1e-4, 1e-3);  // n² ρw g / k
+}
+
+TEST(Drag, KozenyCarmanFollowsThePorosity) {
+  const Soil soil = test::sand();
+  const Drag drag = Drag::from(soil, {});
+  const auto shape = [](double n) { return n * n * n / ((1 - n) * (1 - n)); };
+  EXPECT_NEAR(drag.resistance(0.4), 0.16 * 1000 * kGravity / 1e-4, 1e-3);
+  for (const double n : {0.2, 0.35, 0.6, 0.9}) {
+    const double k = 1e-4 * shape(n) / shape(0.4), expected = n * n * 1000 * kGravity / k;
+    EXPECT_NEAR(drag.resistance(n) / expected, 1, 1e-12) << n;
+  }
+  EXPECT_LT(drag.resistance(0.9), drag.resistance(0.4));  // loosened soil lets water through
+}
+
+TEST(Drag, FollowsTheDensityOfTheWater) {
+  Water oil;
+  oil.density = 800;
+  EXPECT_NEAR(Drag::from(test::sand(), oil).resistance(0.4) / Drag::from(test::sand(), {}).resistance(0.4),
+              0.8, 1e-12);
+}
+
+const double kConstrained = Elastic::from_young(1e7, 0.3).constrained();  // Pa, 13.5 MPa
+
+/// Soil of E = 10 MPa, ν = 0.3, n = 0.4 in nearly incompressible water.
+SaturatedSoil reference(double permeability) {
+  return {kConstrained, 2650, 1000, 1 / 2.2e9, 0.4, 0.16 * 1000 * kGravity / permeability};
+}
+constexpr double kCell = 0.01;  // m
+
+TEST(Stability, DryLimitIsTheFramesWaveAcrossACell) {
+  const SaturatedSoil soil = reference(1e-4);
+  EXPECT_NEAR(dry_step_limit(soil, kCell), 0.01 * std::sqrt(0.6 * 2650 / kConstrained), 1e-15);
+  EXPECT_NEAR(dry_step_limit(soil, 10 * kCell) / dry_step_limit(soil, kCell), 10, 1e-12);
+}
+
+TEST(Stability, SurfaceLimitSolvesItsQuadratic) {
+  for (const double k : {1e-2, 1e-4, 1e-6}) {
+    const SaturatedSoil soil = reference(k);
+    const double dt = surface_step_limit(soil, kCell), mass = 0.6 * 2650;
+    const double wave = 4 * dt * dt * kConstrained / (mass * kCell * kCell),
+                 damping = 4 + 2 * dt * soil.drag / mass;
+    EXPECT_NEAR(wave / damping, 1, 1e-12);
+  }
+  SaturatedSoil free = reference(1);
+  free.drag = 0;
+  EXPECT_NEAR(surface_step_limit(free, kCell), dry_step_limit(free, kCell), 1e-15);
+}
+
+// Figures of the prototype's von Neumann analysis, to two digits.
+TEST(Stability, CoupledLimitHasTheReferenceValues) {
+  const std::pair<double, double> expected[] = {{1e-2, 1.4e-4}, {1e-4, 4e-4}, {1e-6, 3.6e-2}};
+  for (const auto& [k, seconds] : expected)
+    EXPECT_NEAR(coupled_step_limit(reference(k), kCell) / seconds, 1, 0.1) << k;
+}
+
+TEST(Stability, StifferOrLooserSoilNeedsSmallerSteps) {
+  SaturatedSoil soil = reference(1e-4);
+  const double bound = coupled_step_limit(soil, kCell);
+  soil.constrained_modulus *= 4;
+  EXPECT_LT(coupled_step_limit(soil, kCell), 0.75 * bound);
+  soil = reference(1e-3);
+  EXPECT_LT(coupled_step_limit(soil, kCell), bound);
+  EXPECT_LT(surface_step_limit(soil, kCell), surface_step_limit(reference(1e-4), kCell));
+}
+
+TEST(StepLimit, TableAgreesWithTheAnalysis) {
+  const Soil s = test::sand();
+  const SoilMaterial material = SoilMaterial::from(s, {});
+  const StepLimit limit(material, 1000, 1 / 2.2e9, kCell);
+  for (const double n : {0.25, 0.4, 0.41, 0.55}) {
+    const SaturatedSoil soil{material.elastic.constrained(), 2650, 1000, 1 / 2.2e9, n,
+                             material.drag.resistance(n)};
+    const double saturated = std::min(coupled_step_limit(soil, kCell), surface_step_limit(soil, kCell));
+    EXPECT_NEAR(limit.dry(n) / dry_step_limit(soil, kCell), 1, 1e-3) << n;
+    EXPECT_NEAR(limit.saturated(n) / saturated, 1, 0.02) << n;
+  }
+  for (const double n : {0.0, 0.02, 0.999, 1.0}) {  // any porosity that a point may have
+    EXPECT_GT(limit.dry(n), 0);
+    EXPECT_GT(limit.saturated(n), 0);
+  }
+}
+
+}  // namespace
+}  // namespace quicksand

@@ -1,0 +1,165 @@
+#include "engine/points/blocks.hpp"
+
+#include <gtest/gtest.h>
+#include <tbb/task_arena.h>
+
+#include <map>
+#include <mutex>
+#include <random>
+#include <set>
+
+#include "engine/grid/stencil.hpp"
+
+namespace quicksand {
+namespace {
+
+template <int D>
+Grid<D> uneven_grid() {
+  Cell<D> count;
+  for (int d = 0; d < D; ++d) count[d] = D == 2 ? 13 - 4 * d : 9 - 3 * d;  // 13×9 and 9×6×3
+  return Grid<D>(Vec<D>{}, count, 0.1);
+}
+
+template <int D>
+void expect_cells_once(const Grid<D>& grid) {
+  const Blocks<D> blocks(grid);
+  std::map<int, int> block_of;
+  for (int b = 0; b < blocks.count(); ++b)
+    blocks.cells(grid, b, false, [&](int i, const Cell<D>& c) {
+      EXPECT_TRUE(block_of.emplace(i, b).second);
+      EXPECT_EQ(grid.index(c), i);
+      EXPECT_EQ(blocks.block_of(c), b);
+    });
+  int inside = 0;
+  for_each_cell(grid, [&](int i, const Cell<D>&) {
+    ++inside;
+    EXPECT_TRUE(block_of.count(i));
+  });
+  EXPECT_EQ(static_cast<int>(block_of.size()), inside);
+}
+
+template <int D>
+void expect_faces_once(const Grid<D>& grid) {
+  const Blocks<D> blocks(grid);
+  std::map<int, int> visits;
+  for (int b = 0; b < blocks.count(); ++b)
+    blocks.cells(grid, b, true, [&](int i, const Cell<D>& c) {
+      ++visits[i];
+      EXPECT_EQ(grid.index(c), i);
+    });
+  int faces = 1;
+  for (int d = 0; d < D; ++d) faces *= grid.cells[d] + 1;
+  EXPECT_EQ(static_cast<int>(visits.size()), faces);
+  for (const auto& [face, n] : visits) EXPECT_EQ(n, 1) << face;
+}
+
+TEST(Blocks, EachCellIsInOneBlock) {
+  expect_cells_once(uneven_grid<2>());
+  expect_cells_once(uneven_grid<3>());
+  expect_cells_once(Grid<2>({0, 0}, {1, 8}, 1));  // thinner than a block
+}
+
+TEST(Blocks, EachFaceIsVisitedOnce) {
+  expect_faces_once(uneven_grid<2>());
+  expect_faces_once(uneven_grid<3>());
+  expect_faces_once(Grid<2>({0, 0}, {4, 8}, 1));  // ends on a block's edge
+}
+
+/// Runs by_color on one thread and tells the blocks of each colour apart by what they may write to.
+template <int D>
+void expect_colors_apart(const Grid<D>& grid) {
+  const Blocks<D> blocks(grid);
+  const auto color_of = [&](int b) {
+    Cell<D> first{};
+    bool known = false;
+    blocks.cells(grid, b, false, [&](int, const Cell<D>& c) {
+      if (!known) first = c, known = true;
+    });
+    int color = 0;
+    for (int d = 0; d < D; ++d) color |= (first[d] / Blocks<D>::kEdge % 2) << d;
+    return color;
+  };
+  std::array<std::map<int, int>, Blocks<D>::kColors> writer;  // target → block
+  const Walls<D> open(grid);
+  for (int b = 0; b < blocks.count(); ++b)
+    blocks.cells(grid, b, false, [&](int, const Cell<D>& c) {
+      for (const double side : {0.01, 0.99}) {
+        Vec<D> x;
+        for (int d = 0; d < D; ++d) x[d] = grid.origin[d] + (c[d] + side) * grid.h;
+        const PointKernel<D> kernel(grid, x);
+        const auto note = [&](int target) {
+          const auto [at, fresh] = writer[color_of(b)].emplace(target, b);
+          EXPECT_TRUE(fresh || at->second == b);
+        };
+        for (int d = 0; d < D; ++d)
+          for_faces(grid, open, kernel, d, [&](int f, double, double, const Vec<D>&) { note(f); });
+        for_centers(grid, open, kernel, [&](int cell, double) { note(cell); });
+      }
+    });
+  // by_color takes one colour after the other: a colour never comes back once left.
+  std::vector<int> order;
+  tbb::task_arena(1).execute([&] { blocks.by_color([&](int b) { order.push_back(color_of(b)); }); });
+  EXPECT_EQ(static_cast<int>(order.size()), blocks.count());
+  EXPECT_TRUE(std::is_sorted(order.begin(), order.end()));
+}
+
+TEST(Blocks, ColoursShareNoFaceWithinReach2D) { expect_colors_apart(uneven_grid<2>()); }
+TEST(Blocks, ColoursShareNoFaceWithinReach3D) { expect_colors_apart(Grid<3>({0, 0, 0}, {13, 9, 9}, 1)); }
+
+TEST(Blocks, ByColorAndAllVisitEveryBlockOnce) {
+  const Blocks<3> blocks(uneven_grid<3>());
+  std::mutex mutex;
+  std::multiset<int> colored, all;
+  blocks.by_color([&](int b) {
+    const std::lock_guard lock(mutex);
+    colored.insert(b);
+  });
+  blocks.all([&](int b) {
+    const std::lock_guard lock(mutex);
+    all.insert(b);
+  });
+  std::multiset<int> expected;
+  for (int b = 0; b < blocks.count(); ++b) expected.insert(b);
+  EXPECT_EQ(colored, expected);
+  EXPECT_EQ(all, expected);
+}
+
+TEST(Blocks, SumIsTakenInTheOrderOfTheBlocks) {
+  const Blocks<2> blocks(Grid<2>({0, 0}, {80, 80}, 1));
+  const auto part = [](int b) { return std::pow(-1.7, b % 40); };
+  double serial = 0;
+  for (int b = 0; b < blocks.count(); ++b) serial += part(b);
+  for (const int threads : {1, 2, 4})
+    tbb::task_arena(threads).execute([&] { EXPECT_EQ(blocks.sum<double>(part), serial); });
+}
+
+TEST(Blocks, GroupIsAStableSort) {
+  const Grid<2> grid = uneven_grid<2>();
+  const Blocks<2> blocks(grid);
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> x(0, 1.3), y(0, 0.9);
+  std::vector<Vec<2>> places(20000);
+  for (auto& p : places) p = {x(random), y(random)};
+  BlockList list;
+  blocks.group(grid, places, list);
+  ASSERT_EQ(static_cast<int>(list.begin.size()), blocks.count() + 1);
+  EXPECT_EQ(list.begin.front(), 0u);
+  EXPECT_EQ(list.begin.back(), places.size());
+  std::vector<char> seen(places.size(), 0);
+  for (int b = 0; b < blocks.count(); ++b)
+    for (auto i = list.begin[b]; i < list.begin[b + 1]; ++i) {
+      const auto p = list.order[i];
+      EXPECT_EQ(blocks.block_of(grid.cell_of(places[p])), b);
+      if (i > list.begin[b]) {
+        EXPECT_LT(list.order[i - 1], p);
+      }
+      EXPECT_FALSE(seen[p]);
+      seen[p] = 1;
+    }
+  blocks.group(grid, {}, list);  // an empty set leaves nothing behind
+  EXPECT_TRUE(list.order.empty());
+  EXPECT_EQ(list.begin.back(), 0u);
+}
+
+}  // namespace
+}  // namespace quicksand
