@@ -27,8 +27,8 @@ std::string heave_text(const Json& heave) {
                gradient = number(heave, "gradient"), critical = number(heave, "critical_gradient");
   std::string text;
   if (heave.find("moved") != heave.end() && heave["moved"] == true)
-    text +=
-        fmt::format("  The sand moved at t = {:.3g} s.\n  Then: head difference {:.3g} m", moved_at, head);
+    text += fmt::format("  The sand moved at t = {:.3g} s.\n  Largest head difference until then {:.3g} m",
+                        moved_at, head);
   else
     text += fmt::format("  The sand did not move.\n  Largest head difference {:.3g} m", head);
   text += fmt::format(", hydraulic gradient {:.3g}, critical gradient i_c {:.3g}\n", gradient, critical);

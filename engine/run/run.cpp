@@ -86,6 +86,7 @@ class Run {
     bound_seconds_[chosen.name] += last_.dt;
     iterations_ += last_.pressure.iterations;
     ledger_.add(state_, last_);
+    watch_.track(state_);
     if (!last_.finite) return fail(not_finite(scene_, state_));
     if (!last_.pressure.converged) return fail(pressure_not_found(scene_, state_, last_.pressure.residual));
     if (due(last_sample_time_, scene_.output.series_interval)) write_sample();

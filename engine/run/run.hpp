@@ -90,8 +90,8 @@ struct Ledger {
 struct HeaveReport {
   bool moved = false;
   double time = 0;                      ///< s, when the mean rise passed the threshold
-  double head_difference = 0;           ///< m, between the probes at that time (else: largest seen)
-  double gradient = 0;                  ///< –, head difference over the distance of the probes
+  double head_difference = 0;           ///< m, largest between the probes until the body had moved
+  double gradient = 0;                  ///< –, head_difference over the distance of the probes
   double critical_gradient = 0;         ///< –, (1−n)(ρs/ρw − 1)
   double final_rise = 0, max_rise = 0;  ///< m, mean upward movement of the body
   double max_point_displacement = 0;    ///< m

@@ -94,6 +94,14 @@ Watch<D>::Watch(const Scene& scene) : scene_(scene) {
       report.critical_gradient = (1 - soil.porosity) * (soil.grain_density / scene.water.density - 1);
     }
   heave_.push_back(report);
+  Vec<D> gravity;
+  for (int d = 0; d < D; ++d) gravity[d] = scene.gravity[d];
+  const Vec<D> u = up<D>(gravity);
+  for (const Probe& probe : scene.output.probes)
+    for (int d = 0; d < D; ++d) {
+      if (probe.name == scene.output.heave->above) probe_distance_ += u[d] * probe.at[d];
+      if (probe.name == scene.output.heave->below) probe_distance_ -= u[d] * probe.at[d];
+    }
 }
 
 template <int D>
@@ -147,7 +155,7 @@ std::vector<double> Watch<D>::sample(const State<D>& s, const StepReport<D>& ste
   out.insert(out.end(), {static_cast<double>(l.clipped_points), static_cast<double>(l.clamped_values),
                          static_cast<double>(l.cut_steps), step.dt,
                          static_cast<double>(step.pressure.iterations), step.max_speed, step.max_soil_speed});
-  sample_heave(s);
+  sample_rise(s);
   return out;
 }
 
@@ -159,30 +167,27 @@ double Watch<D>::head_of(const State<D>& s, const std::string& name) const {
 }
 
 template <int D>
-void Watch<D>::sample_heave(const State<D>& s) {
+void Watch<D>::track(const State<D>& s) {
+  if (heave_.empty() || heave_.front().moved) return;
+  HeaveReport& report = heave_.front();
+  const double difference = head_of(s, scene_.output.heave->below) - head_of(s, scene_.output.heave->above);
+  if (difference <= report.head_difference) return;
+  report.head_difference = difference;
+  report.gradient = difference / probe_distance_;
+}
+
+template <int D>
+void Watch<D>::sample_rise(const State<D>& s) {
   if (heave_.empty()) return;
-  const HeaveWatch& watch = *scene_.output.heave;
   HeaveReport& report = heave_.front();
   for (int b : moving_soil_) {
-    if (scene_.bodies[b].name != watch.body) continue;
+    if (scene_.bodies[b].name != scene_.output.heave->body) continue;
     const Rise r = rise_of(s, b);
     report.final_rise = r.mean;
     report.max_rise = std::max(report.max_rise, r.mean);
     report.max_point_displacement = std::max(report.max_point_displacement, r.largest);
-    if (report.moved) return;
-    const double difference = head_of(s, watch.below) - head_of(s, watch.above);
-    const bool moved = r.mean > watch.threshold;
-    if (!moved && difference < report.head_difference) return;
-    double distance = 0;
-    const Vec<D> u = up<D>(s.constants.gravity);
-    for (const Probe& probe : scene_.output.probes)
-      for (int d = 0; d < D; ++d)
-        distance += probe.name == watch.above   ? u[d] * probe.at[d]
-                    : probe.name == watch.below ? -u[d] * probe.at[d]
-                                                : 0;
-    report.head_difference = difference;
-    report.gradient = difference / distance;
-    report.moved = moved;
+    if (report.moved || r.mean <= scene_.output.heave->threshold) continue;
+    report.moved = true;
     report.time = s.time;
   }
 }

@@ -31,14 +31,17 @@ class Watch {
   explicit Watch(const Scene& scene);
   std::vector<SeriesInfo> info() const;
   std::vector<double> sample(const State<D>& state, const StepReport<D>& step, const Ledger& ledger);
+  /// After every step: keeps the largest head difference until the watched body has moved.
+  void track(const State<D>& state);
   const std::vector<HeaveReport>& heave() const { return heave_; }
 
  private:
-  void sample_heave(const State<D>& state);
+  void sample_rise(const State<D>& state);
   double head_of(const State<D>& state, const std::string& probe) const;
   const Scene& scene_;
   std::vector<int> moving_soil_;  ///< bodies
   std::vector<HeaveReport> heave_;
+  double probe_distance_ = 0;  ///< m, along gravity, between the probes of the heave watch
 };
 
 }  // namespace quicksand

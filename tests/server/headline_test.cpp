@@ -30,7 +30,7 @@ void expect_holds(const std::string& text, const std::string& part) {
 
 TEST(HeadlineText, SaysWhenTheSandMovedAndUnderWhatGradient) {
   const std::string text = headline(heaved());
-  for (const char* part : {"heave: succeeded", "moved at t = 3.42 s", "head difference 0.238 m",
+  for (const char* part : {"heave: succeeded", "moved at t = 3.42 s", "head difference until then 0.238 m",
                            "hydraulic gradient 1.98", "i_c 0.99", "12 mm at the end", "15 mm at most",
                            "31 mm", "0.12 %", "Simulated 5 s in 40 s", "10000 steps", "2e+06 point-steps/s"})
     expect_holds(text, part);
