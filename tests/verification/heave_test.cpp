@@ -14,7 +14,8 @@ namespace quicksand::test {
 namespace {
 
 // Geometry of cases/heave, m.
-constexpr double kGate = 0.18, kPoolLevel = 0.22, kBlockLeft = 0.16, kBlockRight = 0.22, kBlockLow = 0.04;
+constexpr double kGate = 0.18, kPoolLevel = 0.22, kBlockLeft = 0.16, kBlockRight = 0.22, kBlockLow = 0.04,
+                 kFilterTop = 0.06;
 constexpr double kEquilibrium = 0.25;  ///< s
 
 Scene load(const std::string& name, Preset preset) {
@@ -110,17 +111,36 @@ void expect_levels_follow_the_flow(const Scene& scene, const Recorded& r) {
   EXPECT_LT(worst, 0.005 * r.report.ledger.water_volume_initial);
 }
 
-void expect_heave(const Recorded& r, double least_rise) {
+/// The layer has risen and left a gap: away from the walls no grain lies within `gap` above the filter.
+void expect_heave(const Recorded& r, double least_rise, double gap) {
   ASSERT_EQ(r.report.heave.size(), 1u);
-  EXPECT_TRUE(r.report.heave[0].moved);
-  EXPECT_GT(r.report.heave[0].final_rise, least_rise);
-  // The gap: no grain within 5 mm above the filter.
+  const HeaveReport& heave = r.report.heave[0];
+  std::printf("moved at %.3f s, gradient until then %.2f, rise %.1f mm\n", heave.time, heave.gradient,
+              1e3 * heave.final_rise);
+  EXPECT_TRUE(heave.moved);
+  EXPECT_GT(heave.gradient, 0.9);
+  EXPECT_GT(heave.final_rise, least_rise);
   const Frame& last = r.results.frames.back();
   double lowest = 1;
+  for (std::size_t i = 0; i < last.points(); ++i) {
+    const double x = last.position[3 * i], y = last.position[3 * i + 1];
+    if (last.phase[i] == 0 && y > kFilterTop && std::abs(x - 0.30) < 0.03) lowest = std::min(lowest, y);
+  }
+  EXPECT_GT(lowest, kFilterTop + gap);
+}
+
+/// Grains have loosened somewhere within 3 cm of the layer's surface.
+void expect_loosened_surface(const Recorded& r) {
+  const Frame& last = r.results.frames.back();
+  const auto& n = field(last, "porosity");
+  double top = 0, loosest = 0;
   for (std::size_t i = 0; i < last.points(); ++i)
-    if (last.phase[i] == 0 && last.position[3 * i + 1] > 0.06)
-      lowest = std::min(lowest, last.position[3 * i + 1]);
-  EXPECT_GT(lowest, 0.065);
+    if (last.phase[i] == 0) top = std::max(top, last.position[3 * i + 1]);
+  for (std::size_t i = 0; i < last.points(); ++i)
+    if (last.phase[i] == 0 && last.position[3 * i + 1] > top - 0.03)
+      loosest = std::max<double>(loosest, n[i]);
+  std::printf("loosest grains near the surface: n = %.3f\n", loosest);
+  EXPECT_GT(loosest, 0.45);
 }
 
 TEST(Heave, EquilibriumThenTheGapOpens) {
@@ -130,7 +150,18 @@ TEST(Heave, EquilibriumThenTheGapOpens) {
   expect_conservation(r);
   expect_no_leak(scene, r);
   expect_levels_follow_the_flow(scene, r);
-  expect_heave(r, 0.01);
+  expect_heave(r, 0.0015, 0.004);
+}
+
+/// Without wall friction the layer lifts as one plug as soon as the gradient passes i_c.
+TEST(Heave, SmoothWallsLetItRiseAsAPlug) {
+  const Scene scene = shortened("heave-smooth-walls", 0.5);
+  const Recorded r = record(scene);
+  expect_equilibrium(scene, r, 0.46);
+  expect_conservation(r);
+  expect_no_leak(scene, r);
+  expect_levels_follow_the_flow(scene, r);
+  expect_heave(r, 0.01, 0.005);
 }
 
 TEST(Heave, HalfTheCriticalHeadMovesNothing) {
@@ -173,7 +204,8 @@ TEST(SlowHeave, DraftToTheEnd) {
   expect_conservation(r);
   expect_no_leak(scene, r);
   expect_levels_follow_the_flow(scene, r);
-  expect_heave(r, 0.04);
+  expect_heave(r, 0.015, 0.01);
+  expect_loosened_surface(r);
 }
 
 TEST(SlowHeave, LowHeadForFiveSeconds) {
@@ -194,10 +226,12 @@ TEST(SlowHeave, StandardTellsTheSameStory) {
   expect_conservation(r);
   expect_no_leak(scene, r);
   expect_levels_follow_the_flow(scene, r);
-  expect_heave(r, 0.04);
-  EXPECT_NEAR(r.report.heave[0].time, draft.report.heave[0].time, 0.02);
+  expect_heave(r, 0.015, 0.01);
+  expect_loosened_surface(r);
+  // Rough walls hold the sand within half a cell of them, so the coarse grid is held more: 20 % less rise.
+  EXPECT_NEAR(r.report.heave[0].time, draft.report.heave[0].time, 0.1);
   EXPECT_NEAR(r.report.heave[0].final_rise, draft.report.heave[0].final_rise,
-              0.1 * draft.report.heave[0].final_rise);
+              0.35 * draft.report.heave[0].final_rise);
 }
 
 }  // namespace
