@@ -1,0 +1,64 @@
+// The same bits whatever the number of threads.
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
+
+#include <cstring>
+
+#include "tests/engine/step/motion.hpp"
+
+namespace quicksand {
+namespace {
+
+using namespace test;
+
+template <class T>
+bool same_bits(const std::vector<T>& a, const std::vector<T>& b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
+}
+
+template <int D>
+State<D> advanced(const Scene& scene, int threads, int steps, double dt) {
+  tbb::task_arena arena(threads);
+  return arena.execute([&] {
+    State<D> s = make_state<D>(scene);
+    advance_times(s, steps, dt);
+    return s;
+  });
+}
+
+template <int D>
+void expect_same(const State<D>& a, const State<D>& b) {
+  EXPECT_TRUE(same_bits(a.soil.x, b.soil.x));
+  EXPECT_TRUE(same_bits(a.soil.v, b.soil.v));
+  EXPECT_TRUE(same_bits(a.soil.stress, b.soil.stress));
+  EXPECT_TRUE(same_bits(a.soil.porosity, b.soil.porosity));
+  EXPECT_TRUE(same_bits(a.soil.plastic_strain, b.soil.plastic_strain));
+  EXPECT_TRUE(same_bits(a.water.x, b.water.x));
+  EXPECT_TRUE(same_bits(a.water.v, b.water.v));
+  EXPECT_TRUE(same_bits(a.pressure, b.pressure));
+  EXPECT_EQ(a.time, b.time);
+}
+
+TEST(Determinism, OneAndTwoThreadsGiveTheSameBits) {
+  const tbb::global_control more(tbb::global_control::max_allowed_parallelism, 4);
+  const Scene scene = collapse(0.025);
+  const State<2> one = advanced<2>(scene, 1, 100, 2e-4);
+  double moved = 0;
+  for (std::size_t p = 0; p < one.water.size(); ++p) moved = std::max(moved, std::abs(one.water.v[p][0]));
+  ASSERT_GT(moved, 0.01);  // something happened
+  expect_same(one, advanced<2>(scene, 2, 100, 2e-4));
+  expect_same(one, advanced<2>(scene, 4, 100, 2e-4));
+}
+
+TEST(Determinism, OneAndTwoThreadsGiveTheSameBitsInSpace) {
+  const tbb::global_control more(tbb::global_control::max_allowed_parallelism, 4);
+  Scene s = space({0.6, 0.4, 0.5}, 0.05);
+  add_body(s, "bank", BodyKind::saturated_soil, {0, 0, 0}, {0.2, 0.4, 0.2});
+  add_body(s, "pool", BodyKind::water, {0.2, 0, 0}, {0.3, 0.4, 0.3});
+  expect_same(advanced<3>(s, 1, 30, 2e-4), advanced<3>(s, 2, 30, 2e-4));
+}
+
+}  // namespace
+}  // namespace quicksand

@@ -1,0 +1,141 @@
+// The pressure system, and the mass balance that it has to leave behind.
+
+#include "engine/step/pressure.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+
+#include "engine/step/phases.hpp"
+#include "tests/engine/step/motion.hpp"
+
+namespace quicksand {
+namespace {
+
+using namespace test;
+
+/// State in the midst of motion, before the pressure is solved for.
+template <int D>
+State<D> moving_state(const Scene& scene, double dt) {
+  State<D> s = make_state<D>(scene);
+  advance_times(s, 60, dt);
+  points_to_faces(s);
+  find_surface(s);
+  s.pressure_old = s.pressure;
+  predict_velocities(s, dt);
+  return s;
+}
+
+template <int D>
+void expect_symmetric_and_solved(const Scene& scene, double dt) {
+  State<D> s = moving_state<D>(scene, dt);
+  const PressureReport report = solve_pressure(s, dt);
+  const PressureSystem<D>& m = s.pressure_system;
+  const int rows = static_cast<int>(m.cell.size());
+  ASSERT_GT(rows, 20);
+  EXPECT_EQ(report.unknowns, rows);
+  EXPECT_TRUE(report.converged);
+  EXPECT_LE(report.residual, s.constants.pressure_tolerance);
+
+  Eigen::MatrixXd a = Eigen::MatrixXd::Zero(rows, rows);
+  for (int r = 0; r < rows; ++r) {
+    a(r, r) = m.diagonal[r];
+    for (int d = 0; d < D; ++d) {
+      if (const int j = m.upper[d][r]; j >= 0) {
+        EXPECT_EQ(m.cell[j], m.cell[r] + s.grid.stride[d]);
+        EXPECT_EQ(m.lower[d][j], r);  // the neighbours know each other
+        EXPECT_FALSE(s.water_walls.closed(d, m.cell[j]));
+        EXPECT_LT(m.coupling[d][r], 0);
+        a(r, j) += m.coupling[d][r];
+      } else {
+        EXPECT_EQ(m.coupling[d][r], 0);
+      }
+      if (const int j = m.lower[d][r]; j >= 0) {
+        EXPECT_EQ(m.upper[d][j], r);
+        a(r, j) += m.coupling[d][j];
+      }
+    }
+  }
+  EXPECT_EQ((a - a.transpose()).cwiseAbs().maxCoeff(), 0);
+  for (int r = 0; r < rows; ++r)  // diagonally dominant: storage and the free surface only add
+    EXPECT_GE(a(r, r) - (a.row(r).cwiseAbs().sum() - a(r, r)), -1e-12 * a(r, r));
+  EXPECT_EQ(Eigen::LLT<Eigen::MatrixXd>(a).info(), Eigen::Success);  // positive definite
+
+  const Eigen::Map<const Eigen::VectorXd> x(m.solution.data(), rows), b(m.rhs.data(), rows);
+  EXPECT_LT((a * x - b).cwiseAbs().maxCoeff(), 2 * s.constants.pressure_tolerance * b.cwiseAbs().maxCoeff());
+  const Eigen::VectorXd direct = a.llt().solve(b);
+  EXPECT_LT((x - direct).cwiseAbs().maxCoeff(), 1e-3 * direct.cwiseAbs().maxCoeff());
+}
+
+TEST(Pressure, MatrixIsSymmetricAndSolved2D) { expect_symmetric_and_solved<2>(collapse(), 2e-4); }
+
+TEST(Pressure, MatrixIsSymmetricAndSolved3D) {
+  Scene s = space({0.6, 0.2, 0.5}, 0.05);
+  add_body(s, "bank", BodyKind::saturated_soil, {0, 0, 0}, {0.2, 0.2, 0.2});
+  add_body(s, "pool", BodyKind::water, {0.2, 0, 0}, {0.3, 0.2, 0.3});
+  expect_symmetric_and_solved<3>(s, 2e-4);
+}
+
+/// −∇·q of a cell from the faces, 1/s; faces on walls carry nothing.
+template <int D>
+double inflow(const State<D>& s, int i) {
+  double sum = 0;
+  for (int d = 0; d < D; ++d)
+    for (int side : {0, 1}) {
+      const int face = i + side * s.grid.stride[d];
+      if (!s.water_walls.closed(d, face)) sum += (1 - 2 * side) * s.flow[d][face].flux() * s.grid.inverse_h;
+    }
+  return sum;
+}
+
+TEST(Pressure, CorrectedVelocitiesBalanceTheMass) {
+  Scene scene = collapse();
+  scene.numerics.drift_time = 0;
+  scene.numerics.pressure_tolerance = 1e-10;
+  scene.water.bulk_modulus = 1e7;  // storage that counts
+  const double dt = 2e-4;
+  State<2> s = moving_state<2>(scene, dt);
+  double before = 0;
+  for_each_cell(s.grid, [&](int i, const Cell<2>&) {
+    if (s.cell[i].unknown >= 0) before = std::max(before, std::abs(inflow(s, i)));
+  });
+  ASSERT_TRUE(solve_pressure(s, dt).converged);
+  correct_velocities(s);
+  double open = 0;
+  for_each_cell(s.grid, [&](int i, const Cell<2>&) {
+    if (s.cell[i].unknown < 0) return;
+    const double stored =
+        s.cell[i].n * s.constants.water_compliance / dt * (s.pressure[i] - s.pressure_old[i]);
+    open = std::max(open, std::abs(stored - inflow(s, i)));
+  });
+  EXPECT_GT(before, 0.01);
+  EXPECT_LT(open, 1e-6 * before);
+}
+
+TEST(Pressure, OverfullCellsArePushedApartOverTheDriftTime) {
+  Scene scene = plane(1, 1, 0.1);
+  add_body(scene, "pool", BodyKind::water, {0, 0, 0}, {1, 0.8, 0});
+  scene.numerics.drift_time = 0.05;
+  State<2> s = make_state<2>(scene);
+  for (std::size_t p = 0; p < s.water.size(); ++p)  // 10 % too much in the middle
+    if (std::abs(s.water.x[p][0] - 0.5) < 0.2 && std::abs(s.water.x[p][1] - 0.4) < 0.2)
+      s.water.mass[p] *= 1.1;
+  const auto excess = [&] { return s.cell[s.grid.index({5, 4})].excess; };
+  advance(s, 1e-3);
+  const double start = excess();
+  EXPECT_NEAR(start, 0.1, 0.01);
+  advance_times(s, 200, 1e-3);
+  EXPECT_LT(excess(), 0.5 * start);
+}
+
+TEST(Pressure, NoWaterNoUnknowns) {
+  Scene scene = plane(1, 1, 0.1);
+  add_body(scene, "lump", BodyKind::soil, {0, 0, 0}, {0.5, 0.5, 0});
+  State<2> s = make_state<2>(scene);
+  const auto report = advance(s, 1e-4);
+  EXPECT_EQ(report.pressure.unknowns, 0);
+  EXPECT_TRUE(report.pressure.converged);
+}
+
+}  // namespace
+}  // namespace quicksand
