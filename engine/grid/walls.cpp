@@ -81,6 +81,7 @@ template <int D>
 Walls<D>::Walls(const Grid<D>& grid) : blocked_(grid.count(), 1), fold_of_(grid.count(), -1) {
   for (auto& c : closed_) c.assign(grid.count(), 0);
   for (auto& c : separated_) c.assign(grid.count(), 0);
+  separated_next_ = separated_;
   for_each_cell(grid, [&](int i, const Cell<D>&) { blocked_[i] = 0; });
 }
 

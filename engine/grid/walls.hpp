@@ -6,6 +6,7 @@
 // tangential ones as they are (slip) or with the sign changed (no slip). Walls of no thickness and
 // blocks are treated alike, because visibility is asked cell by cell, from the point's own cell outwards.
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -38,7 +39,10 @@ class Walls {
 
   bool closed(int d, int face) const { return closed_[d][face] != 0; }
   bool no_slip(int d, int face) const { return closed_[d][face] == 2; }
-  void close(int d, int face, bool no_slip) { closed_[d][face] = no_slip ? 2 : 1; }
+  /// A face closed twice is no-slip if either is.
+  void close(int d, int face, bool no_slip) {
+    closed_[d][face] = std::max<std::uint8_t>(closed_[d][face], no_slip ? 2 : 1);
+  }
   void open(int d, int face) { closed_[d][face] = 0; }
   /// A cell that the phase can never enter (block, outside of the domain).
   bool blocked(int cell) const { return blocked_[cell] != 0; }
@@ -47,7 +51,9 @@ class Walls {
   /// True where matter is leaving a closed face on its own (grains lifting off a floor): the mirror then
   /// keeps the sign of the normal component, and the face itself moves. Set by the step, for grains only.
   bool separated(int d, int face) const { return separated_[d][face] != 0; }
-  void set_separated(int d, int face, bool value) { separated_[d][face] = value; }
+  void set_separated(int d, int face, bool value) { separated_next_[d][face] = value; }
+  /// Makes what was set hold from here on: between two steps, so that one step folds with one sign.
+  void commit_separated() { separated_ = separated_next_; }
 
   /// Recomputes the folds; call after the last close/open.
   void rebuild(const Grid<D>& grid);
@@ -56,7 +62,7 @@ class Walls {
 
  private:
   std::array<std::vector<std::uint8_t>, D> closed_;  ///< 0 open, 1 slip, 2 no slip
-  std::array<std::vector<std::uint8_t>, D> separated_;
+  std::array<std::vector<std::uint8_t>, D> separated_, separated_next_;
   std::vector<std::uint8_t> blocked_;
   std::vector<std::int32_t> fold_of_;
   std::vector<CellFolds> folds_;

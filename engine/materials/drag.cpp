@@ -10,6 +10,7 @@ constexpr double kStandardGravity = 9.81;
 
 Drag Drag::from(const Soil& soil, const Water& water) {
   const double n = soil.porosity;
+  if (soil.permeability.value <= 0) return {0, n, false};  // dry soil has none
   return {n * n * water.density * kStandardGravity / soil.permeability.value, n,
           soil.permeability.law == PermeabilityLaw::kozeny_carman};
 }

@@ -9,7 +9,7 @@ struct Drag {
   double porosity = 0.4;    ///< –, n0
   bool follows_porosity = true;
 
-  /// `g` is the magnitude of gravity that the conductivity is meant for, 9.81 m/s².
+  /// Conductivity is meant under standard gravity, 9.81 m/s²; without permeability (dry soil) R = 0.
   static Drag from(const Soil& soil, const Water& water);
 
   /// R(n). Darcy: n² ρw g / k [FMS19]. Kozeny–Carman: k = k0 [n³/(1−n)²]/[n0³/(1−n0)²].

@@ -32,6 +32,7 @@ LedgerKeeper<D>::LedgerKeeper(const Scene&, const State<D>& s) {
   ledger_.solid_mass = ledger_.solid_mass_initial = total(s.soil.mass) + total(s.fixed.mass);
   ledger_.water_volume = ledger_.water_volume_initial = water_volume(s);
   start_momentum_ = s.momentum;
+  for (double p : s.momentum) driving_impulse_ += std::abs(p);
 }
 
 template <int D>
@@ -40,13 +41,11 @@ void LedgerKeeper<D>::add(const State<D>& s, const StepReport<D>& step) {
   l.clipped_points = s.interventions.clipped_points;
   l.clamped_values = s.interventions.clamped_values;
   l.cut_steps = s.interventions.cut_steps;
-  l.energy_kinetic = step.kinetic;
-  l.energy_strain = step.strain;
   const double moving = step.moving_mass;
-  double residual = 0, weight = 0;
+  double residual = 0, driving = 0;
   for (int d = 0; d < D; ++d) {
     const double impulse = moving * s.constants.gravity[d] * step.dt;
-    weight += impulse * impulse;
+    driving += impulse * impulse + step.impulse_loads[d] * step.impulse_loads[d];
     l.impulse_gravity[d] += impulse;
     l.impulse_walls[d] += step.impulse_walls[d];
     l.impulse_loads[d] += step.impulse_loads[d];
@@ -56,13 +55,15 @@ void LedgerKeeper<D>::add(const State<D>& s, const StepReport<D>& step) {
                         l.impulse_surface[d] - l.impulse_loads[d];
     residual += open * open;
   }
-  weight_impulse_ += std::sqrt(weight);
-  l.momentum_residual = weight_impulse_ > 0 ? std::sqrt(residual) / weight_impulse_ : 0;
+  driving_impulse_ += std::sqrt(driving);
+  l.momentum_residual = driving_impulse_ > 0 ? std::sqrt(residual) / driving_impulse_ : 0;
 }
 
 template <int D>
-void LedgerKeeper<D>::measure(const State<D>& s) {
+void LedgerKeeper<D>::measure(const State<D>& s, const StepReport<D>& step) {
   Ledger& l = ledger_;
+  l.energy_kinetic = step.kinetic;
+  l.energy_strain = step.strain;
   l.water_mass = total(s.water.mass);
   l.solid_mass = total(s.soil.mass) + total(s.fixed.mass);
   l.water_volume = water_volume(s);

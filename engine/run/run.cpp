@@ -13,6 +13,7 @@
 #include "engine/run/setup.hpp"
 #include "engine/run/time_step.hpp"
 #include "engine/run/watch.hpp"
+#include "engine/step/phases.hpp"
 
 namespace quicksand {
 namespace {
@@ -35,6 +36,7 @@ class Run {
         watch_(scene) {
     for (const Stage& stage : scene.stages) end_time_ += stage.duration;
     last_.soil_limit = first_soil_limit();
+    measure_motion(state_, last_);
   }
 
   RunReport go() {
@@ -45,7 +47,8 @@ class Run {
     for (const Stage& stage : scene_.stages) {
       if (!run_stage(stage)) break;
     }
-    if (last_frame_time_ < state_.time) write_frame();
+    if (last_.finite && last_sample_time_ < state_.time) write_sample();
+    if (last_.finite && last_frame_time_ < state_.time) write_frame();
     finish();
     return report_;
   }
@@ -57,6 +60,7 @@ class Run {
     enter_stage(scene_, stage, state_);
     monitor_.log("stage " + stage.name + " begins at " + text(state_.time) + " s");
     const double begin = state_.time, end = begin + stage.duration;
+    long rest_steps = 0;
     while (end - state_.time > kTimeRounding * stage.duration) {
       if (monitor_.cancelled()) {
         report_.status = RunStatus::canceled;
@@ -64,9 +68,9 @@ class Run {
       }
       if (report_.steps >= scene_.numerics.max_steps) return fail(too_many_steps(scene_, state_.time));
       if (!step(end)) return false;
-      const bool rested = stage.until_rest && state_.time - begin >= stage.until_rest->at_least &&
-                          last_.max_speed < stage.until_rest->speed;
-      if (rested) {
+      if (!stage.until_rest) continue;
+      rest_steps = last_.max_speed < stage.until_rest->speed ? rest_steps + 1 : 0;
+      if (rest_steps >= kRestSteps && state_.time - begin >= stage.until_rest->at_least) {
         monitor_.log("at rest after " + text(state_.time - begin) + " s");
         end_time_ -= end - state_.time;
         break;
@@ -85,9 +89,9 @@ class Run {
     report_.time_step_max = std::max(report_.time_step_max, last_.dt);
     bound_seconds_[chosen.name] += last_.dt;
     iterations_ += last_.pressure.iterations;
+    if (!last_.finite) return fail(not_finite(scene_, state_));
     ledger_.add(state_, last_);
     watch_.track(state_);
-    if (!last_.finite) return fail(not_finite(scene_, state_));
     if (!last_.pressure.converged) return fail(pressure_not_found(scene_, state_, last_.pressure.residual));
     if (due(last_sample_time_, scene_.output.series_interval)) write_sample();
     if (due(last_frame_time_, scene_.output.frame_interval)) write_frame();
@@ -113,7 +117,7 @@ class Run {
   }
 
   void write_sample() {
-    ledger_.measure(state_);
+    ledger_.measure(state_, last_);
     sink_.sample(state_.time, watch_.sample(state_, last_, ledger_.ledger()));
     last_sample_time_ = state_.time;
   }
@@ -146,7 +150,7 @@ class Run {
   }
 
   void finish() {
-    ledger_.measure(state_);
+    ledger_.measure(state_, last_);
     report_.ledger = ledger_.ledger();
     report_.heave = watch_.heave();
     report_.sim_time = state_.time;
@@ -170,7 +174,7 @@ class Run {
     return limit;
   }
   double first_step(double dt) {
-    if (first_step_ == 0) first_step_ = dt;
+    if (first_step_ == 0) first_step_ = std::min(dt, scene_.output.frame_interval);
     return first_step_;
   }
   static std::string text(double value) {
@@ -181,6 +185,9 @@ class Run {
 
   /// Part of an interval that counts as rounding of time.
   static constexpr double kTimeRounding = 1e-9;
+  /// Steps in a row that must be slow before a stage counts as at rest: a wave crosses some 80 cells in them,
+  /// and a load that has just begun or a turning point does not pass for rest.
+  static constexpr long kRestSteps = 100;
   /// A step this much shorter than the first one says that the state has run away.
   static constexpr double kCollapse = 1e-5;
 

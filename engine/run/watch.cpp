@@ -171,7 +171,7 @@ void Watch<D>::track(const State<D>& s) {
   if (heave_.empty() || heave_.front().moved) return;
   HeaveReport& report = heave_.front();
   const double difference = head_of(s, scene_.output.heave->below) - head_of(s, scene_.output.heave->above);
-  if (difference <= report.head_difference) return;
+  if (!(difference > report.head_difference)) return;
   report.head_difference = difference;
   report.gradient = difference / probe_distance_;
 }

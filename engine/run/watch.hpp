@@ -13,15 +13,15 @@ class LedgerKeeper {
   LedgerKeeper(const Scene& scene, const State<D>& start);
   /// After every step.
   void add(const State<D>& state, const StepReport<D>& step);
-  /// Volumes, masses, potential energy; before each sample.
-  void measure(const State<D>& state);
+  /// Volumes, masses, energies; before each sample.
+  void measure(const State<D>& state, const StepReport<D>& step);
   const Ledger& ledger() const { return ledger_; }
 
  private:
   double potential(const State<D>& state) const;
   Ledger ledger_;
   Vec<D> start_momentum_{};
-  double weight_impulse_ = 0;  ///< N·s, ∫ |weight| dt
+  double driving_impulse_ = 0;  ///< N·s, of weight and loads, and the momentum at the start
 };
 
 /// Samples all series of a scene; `info` and `sample` agree in order.

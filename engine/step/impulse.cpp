@@ -4,7 +4,7 @@
 // goes to mirror images. Drag between the phases cancels face by face; weight is counted elsewhere. What is
 // left are the reactions of supports: of the effective stress (its forces sum to zero but for walls), of the
 // pressure (over all material, ∫∇p dV is the pressure on its walls, as p = 0 on the free surface), of fixed
-// grains, of contact, and of the mirrors.
+// grains, of contact, of the mirrors, and the shear of the water on no-slip walls.
 
 #include "engine/step/phases.hpp"
 
@@ -20,10 +20,10 @@ double soil_reaction(const State<D>& s, int d, int face, double dt) {
   const double mirrored = -s.image[d][face].soil * change;
   const bool stopped = s.soil_walls.closed(d, face) && f.soil == 0;
   if (stopped) {
-    const double drag = dt * f.drag * s.grid.cell_volume() * f.water;
+    const double drag = f.exchange * s.grid.cell_volume();
     return mirrored + sums.soil_mass * (change - dt * s.constants.gravity[d]) - drag;
   }
-  const double pressure = f.wet ? -sums.grains * pressure_gradient(s, d, face) : 0;
+  const double pressure = feels_pressure(s, d, face) ? -sums.grains * pressure_gradient(s, d, face) : 0;
   return mirrored + dt * (sums.soil_force + pressure);
 }
 
@@ -33,10 +33,9 @@ double water_reaction(const State<D>& s, int d, int face, double dt) {
   const FaceFlow& f = s.flow[d][face];
   if (s.water_walls.closed(d, face)) return -dt * sums.water_mass * s.constants.gravity[d];
   const double mirrored = -s.image[d][face].water * (f.water - f.water_old);
-  if (f.wet != 1) return mirrored;  // in the air: falls, or is carried along by the surface
-  const double rho = s.constants.water_density;
-  return mirrored -
-         dt * sums.water_mass / rho * (pressure_gradient(s, d, face) + f.fixed_drag * f.water / f.n);
+  if (f.wet > 1) return mirrored;  // carried along by the surface
+  const double rho = s.constants.water_density, pressure = f.wet ? pressure_gradient(s, d, face) : 0;
+  return mirrored + dt * sums.water_mass * (f.viscous - (pressure + f.fixed_drag * f.water / f.n) / rho);
 }
 
 /// Drops above the last wet face move with the water below them instead of falling through it.
@@ -46,7 +45,7 @@ double surface_support(const State<D>& s, int d, int face, double dt) {
   const FaceFlow& f = s.flow[d][face];
   if (f.wet < 2) return 0;
   return sums.water_mass * (f.water - f.water_old - dt * s.constants.gravity[d]) +
-         dt * f.drag * s.grid.cell_volume() * (f.water - f.soil);
+         f.exchange * s.grid.cell_volume();
 }
 
 template <int D>

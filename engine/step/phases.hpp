@@ -9,21 +9,21 @@ namespace quicksand {
 template <int D>
 struct StepReport;
 
-/// 1. Points → `sums`, `cell_sums`.
+/// Points → `sums`, `cell_sums`.
 template <int D>
 void points_to_faces(State<D>& s);
 /// Once per run: what fixed grains occupy → `fixed_face`, `fixed_cell`.
 template <int D>
 void measure_fixed(State<D>& s);
-/// 2. Water surface, room and volume drift → `cell`.
+/// Water surface, room and volume drift → `cell`.
 template <int D>
 void find_surface(State<D>& s);
-/// 3. Provisional velocities with drag inside, responses to a pressure gradient → `flow`.
+/// Provisional velocities with drag inside, responses to a pressure gradient → `flow`.
 template <int D>
 void predict_velocities(State<D>& s, double dt);
-/// 5a. Velocities after the pressure gradient; extrapolated a little way into the air → `flow`.
+/// Velocities after the pressure gradient; extrapolated a little way into the air → `flow`.
 template <int D>
-void correct_velocities(State<D>& s);
+void correct_velocities(State<D>& s, double dt);
 /// Impulses (N·s) that supports give to the points in this step: walls and fixed grains, with the water's
 /// pressure on them; and the water surface to the drops that it carries. Summed from forces, not from the
 /// change of momentum, so that the ledger's balance is a check.
@@ -33,9 +33,19 @@ struct Supports {
 };
 template <int D>
 Supports<D> support_impulses(const State<D>& s, double dt, double pic);
-/// 5b. Faces → points: velocity, stress, porosity, position.
+/// Faces → points: velocity, stress, porosity, position.
 template <int D>
 void faces_to_points(State<D>& s, double dt, StepReport<D>& report);
+
+/// Momentum, energies, mass and largest speeds of the points as they are → `report`.
+template <int D>
+void measure_motion(const State<D>& s, StepReport<D>& report);
+/// Whether the grains (and open water) of a face are pushed by the pressure: at wet faces, and at walls next to
+/// water, where the gradient is that of still water.
+template <int D>
+bool feels_pressure(const State<D>& s, int d, int face) {
+  return s.flow[d][face].wet || s.water_walls.closed(d, face);
+}
 
 /// Part of a kernel's volume that lies below the water surface, from the parts filled by water, grains and
 /// bulk soil. Water fills the pores of the soil that is there first and free room after, so that a surface at

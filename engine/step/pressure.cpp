@@ -62,6 +62,7 @@ void assemble(State<D>& s, PressureSystem<D>& m, double dt) {
           if (side) m.coupling[d][r] = -beta;
         }
       }
+      if (diagonal <= 0) diagonal = 1, rhs = s.pressure[i];  // a closed cell of incompressible water: as it was
       m.diagonal[r] = diagonal;
       m.rhs[r] = rhs;
       m.solution[r] = s.pressure[i];
@@ -136,6 +137,15 @@ double dot(const std::vector<double>& a, const std::vector<double>& b) {
   return sum;
 }
 
+/// Size of the terms that cancel in a row, times rounding: no residual can be asked to be smaller.
+constexpr double kRounding = 1e-15;
+template <int D>
+double largest_term(const PressureSystem<D>& m) {
+  double term = 0;
+  for (std::size_t r = 0; r < m.cell.size(); ++r) term = std::max(term, std::abs(m.diagonal[r] * m.solution[r]));
+  return term;
+}
+
 /// Preconditioned conjugate gradients on `m`, from `m.solution`.
 template <int D>
 PressureReport conjugate_gradients(PressureSystem<D>& m, double tolerance) {
@@ -145,7 +155,7 @@ PressureReport conjugate_gradients(PressureSystem<D>& m, double tolerance) {
   std::vector<double> r(rows), z(rows), direction(rows), image(rows);
   multiply(m, m.solution, image);
   for (std::size_t i = 0; i < rows; ++i) r[i] = m.rhs[i] - image[i];
-  const double scale = largest(m.rhs), target = tolerance * scale;
+  const double scale = largest(m.rhs), target = tolerance * scale + kRounding * largest_term(m);
   double residual = largest(r);
   if (residual > target) {
     Preconditioner<D> preconditioner;

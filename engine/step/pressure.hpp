@@ -10,7 +10,7 @@ struct PressureReport {
   bool converged = true;
 };
 
-/// 4. Pressure at the end of the step from the mass balance of the mixture, per wet cell
+/// Pressure at the end of the step from the mass balance of the mixture, per wet cell
 ///      n/(Kw Δt) (p − pⁿ) = −∇·q + drift,   q = q̂ − β ∇p,
 /// [FMS19] eq. (3) with the convective term that the print leaves out (∇·q contains it) and p implicit.
 /// `drift` feeds back the volume that cells hold too much or too little, slowly: [FMS19] eq. (5).

@@ -24,6 +24,9 @@ bool travels_too_far(const State<D>& s, double dt) {
   }) > 0;
 }
 
+/// Halvings after which a step is given up: a state that needs a millionth of its stable step has run away.
+constexpr int kMostCuts = 20;
+
 /// Adds the wall time since the last lap to a phase.
 class Stopwatch {
  public:
@@ -39,34 +42,43 @@ class Stopwatch {
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
+/// Velocities on the faces at the end of the step, and the pressure that goes with them. Returns the time that
+/// the step may take; 0 if there is none.
+template <int D>
+double solve_velocities(State<D>& s, double dt, PressureReport& report, Stopwatch& clock) {
+  s.pressure_old = s.pressure;
+  for (int cuts = 0; cuts <= kMostCuts; ++cuts, dt *= 0.5) {
+    predict_velocities(s, dt);  // both momentum balances, drag inside
+    clock.lap(Phase::velocities);
+    report = solve_pressure(s, dt);  // mass balance of the mixture
+    clock.lap(Phase::pressure);
+    correct_velocities(s, dt);  // velocities that keep it
+    const bool fits = !travels_too_far(s, dt);
+    clock.lap(Phase::velocities);
+    if (fits) return dt;
+    s.pressure = s.pressure_old;
+    ++s.interventions.cut_steps;
+  }
+  return 0;
+}
+
 }  // namespace
 
 template <int D>
 StepReport<D> advance(State<D>& s, double dt) {
   StepReport<D> report;
   Stopwatch clock(s.phase_seconds);
-  points_to_faces(s);  // 1. masses, momenta, forces on the faces
+  points_to_faces(s);  // masses, momenta, forces on the faces
   clock.lap(Phase::to_grid);
-  find_surface(s);  // 2. which cells have pressure, where it is zero
+  find_surface(s);  // which cells have pressure, where it is zero
   clock.lap(Phase::surface);
-  s.pressure_old = s.pressure;
-  while (true) {
-    predict_velocities(s, dt);  // 3. both momentum balances, drag inside
-    clock.lap(Phase::velocities);
-    report.pressure = solve_pressure(s, dt);  // 4. mass balance of the mixture
-    clock.lap(Phase::pressure);
-    correct_velocities(s);  // 5. velocities that keep it
-    if (!travels_too_far(s, dt)) break;
-    dt *= 0.5;
-    s.pressure = s.pressure_old;
-    ++s.interventions.cut_steps;
-  }
-  clock.lap(Phase::velocities);
-  faces_to_points(s, dt, report);  // 6. strain, stress, porosity, positions
+  report.dt = solve_velocities(s, dt, report.pressure, clock);
+  report.finite = report.dt > 0;
+  if (!report.finite) return report;
+  faces_to_points(s, report.dt, report);  // velocity, strain, stress, porosity, position
   clock.lap(Phase::to_points);
-  s.time += dt;
-  report.dt = dt;
-  for (int d = 0; d < D; ++d) report.impulse_loads[d] = dt * s.load_force[d];
+  s.time += report.dt;
+  for (int d = 0; d < D; ++d) report.impulse_loads[d] = report.dt * s.load_force[d];
   return report;
 }
 

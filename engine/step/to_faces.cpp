@@ -85,6 +85,7 @@ void loads_to_faces(State<D>& s) {
 
 template <int D>
 void points_to_faces(State<D>& s) {
+  s.soil_walls.commit_separated();
   s.blocks.group(s.grid, s.soil.x, s.soil_blocks);
   s.blocks.group(s.grid, s.water.x, s.water_blocks);
   const bool has_fixed = s.fixed.size() > 0;

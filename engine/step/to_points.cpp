@@ -17,12 +17,13 @@ constexpr double kClearance = 1e-6;
 template <int D>
 struct Totals {
   Vec<D> momentum{};
+  Vec<D> let_go{};  ///< N·s, what the surface did not give to drops that fall freely
   double mass = 0, kinetic = 0, strain = 0, max_speed2 = 0, max_soil_speed2 = 0;
   double soil_limit = std::numeric_limits<double>::infinity();  ///< s
   Interventions interventions;
   bool finite = true;
   Totals& operator+=(const Totals& o) {
-    for (int d = 0; d < D; ++d) momentum[d] += o.momentum[d];
+    for (int d = 0; d < D; ++d) momentum[d] += o.momentum[d], let_go[d] += o.let_go[d];
     mass += o.mass;
     kinetic += o.kinetic;
     strain += o.strain;
@@ -66,21 +67,37 @@ double mix(double own, double old_grid, double new_grid, double pic) {
   return (1 - pic) * (own + new_grid - old_grid) + pic * new_grid;
 }
 
+/// Distance above the water surface, in cells, from which a drop falls freely instead of moving with it. Points
+/// of a surface at rest lie a quarter of a cell below it.
+constexpr double kFreeHeight = 0.25;
+
+template <int D>
+bool falls_freely(const State<D>& s, const PointKernel<D>& kernel) {
+  if (s.cell[kernel.home].confined) return false;
+  double depth = 0;
+  for_centers(s.grid, s.water_walls, kernel, [&](int c, double w) { depth += w * s.cell[c].depth; });
+  return depth < -kFreeHeight;
+}
+
 template <int D>
 void water_from_faces(State<D>& s, std::uint32_t p, double dt, double pic, Totals<D>& totals) {
   WaterPoints<D>& water = s.water;
   const PointKernel<D> kernel(s.grid, water.x[p]);
+  const bool falls = falls_freely(s, kernel);
   Vec<D> step{};
   double speed2 = 0;
   for (int d = 0; d < D; ++d) {
-    double v_old = 0, v_new = 0;
+    double v_old = 0, v_new = 0, carried = 0;
     for_faces(s.grid, s.water_walls, kernel, d, [&](int face, double w, double sign, const Vec<D>&) {
       const FaceFlow& f = s.flow[d][face];
       v_old += sign * w * f.water_old;
       v_new += sign * w * f.water;
+      if (falls && f.wet > 1) carried += sign * w * (f.water - f.water_old - dt * s.constants.gravity[d]);
     });
+    v_new -= carried;
     double& v = water.v[p][d];
     v = mix<D>(v, v_old, v_new, pic);
+    totals.let_go[d] -= water.mass[p] * carried;
     step[d] = dt * v_new;
     totals.momentum[d] += water.mass[p] * v;
     speed2 += v * v;
@@ -90,6 +107,19 @@ void water_from_faces(State<D>& s, std::uint32_t p, double dt, double pic, Total
   totals.kinetic += 0.5 * water.mass[p] * speed2;
   totals.max_speed2 = std::max(totals.max_speed2, speed2);
   totals.finite = totals.finite && std::isfinite(speed2);
+}
+
+/// Elastic energy of a soil point, J.
+template <int D>
+double strain_energy(const State<D>& s, std::size_t p) {
+  const SoilMaterial& material = s.constants.soils[s.soil.soil[p]];
+  const Stress<D>& sigma = s.soil.stress[p];
+  const double volume = s.soil.mass[p] / (material.grain_density * (1 - s.soil.porosity[p]));
+  const double trace = sigma[0] + sigma[1] + sigma[2];
+  double square = sigma[0] * sigma[0] + sigma[1] * sigma[1] + sigma[2] * sigma[2];
+  for (int i = 3; i < kStress<D>; ++i) square += 2 * sigma[i] * sigma[i];
+  const Elastic& e = material.elastic;
+  return volume * (0.25 * (square - trace * trace / 3) / e.shear + trace * trace / (18 * e.bulk));
 }
 
 template <int D>
@@ -130,23 +160,20 @@ void soil_from_faces(State<D>& s, std::uint32_t p, double dt, double pic, Totals
     const StressUpdate<D> u = update_stress<D>(material, soil.stress[p], l, dt);
     soil.stress[p] = u.stress;
     soil.plastic_strain[p] += u.plastic_strain;
-    // Next to the air no pressure resists, so that the frame's own wave is the bound.
-    const StepLimit& limit = s.constants.step_limits[soil.soil[p]];
-    const bool confined = s.cell[kernel.home].confined;
-    totals.soil_limit = std::min(totals.soil_limit, confined ? limit.saturated(n) : limit.dry(n));
   }
-  const Stress<D>& sigma = soil.stress[p];
-  const double volume = soil.mass[p] / (material.grain_density * (1 - n));
-  const double trace = sigma[0] + sigma[1] + sigma[2];
-  double square = sigma[0] * sigma[0] + sigma[1] * sigma[1] + sigma[2] * sigma[2];
-  for (int i = 3; i < kStress<D>; ++i) square += 2 * sigma[i] * sigma[i];
-  const Elastic& e = material.elastic;
-  totals.strain += volume * (0.25 * (square - trace * trace / 3) / e.shear + trace * trace / (18 * e.bulk));
+  // Next to the air no pressure resists, so that the frame's own wave is the bound. Grains that do not touch
+  // may touch again in the next step.
+  const double touching = std::min(n, material.max_porosity);
+  const StepLimit& limit = s.constants.step_limits[soil.soil[p]];
+  const bool confined = s.cell[kernel.home].confined;
+  totals.soil_limit = std::min(totals.soil_limit, confined ? limit.saturated(touching) : limit.dry(touching));
+  const double strain = strain_energy(s, p);
+  totals.strain += strain;
   totals.mass += soil.mass[p];
   totals.kinetic += 0.5 * soil.mass[p] * speed2;
   totals.max_speed2 = std::max(totals.max_speed2, speed2);
   totals.max_soil_speed2 = std::max(totals.max_soil_speed2, speed2);
-  totals.finite = totals.finite && std::isfinite(speed2) && std::isfinite(square);
+  totals.finite = totals.finite && std::isfinite(speed2) && std::isfinite(strain);
 }
 
 /// Markers of a surface load ride on the grains.
@@ -181,6 +208,7 @@ void faces_to_points(State<D>& s, double dt, StepReport<D>& report) {
     return t;
   });
   move_loads(s, dt);
+  for (int d = 0; d < D; ++d) report.impulse_surface[d] += totals.let_go[d];
   s.momentum = report.momentum = totals.momentum;
   report.moving_mass = totals.mass;
   report.kinetic = totals.kinetic;
@@ -192,6 +220,26 @@ void faces_to_points(State<D>& s, double dt, StepReport<D>& report) {
   s.interventions += totals.interventions;
 }
 
+template <int D>
+void measure_motion(const State<D>& s, StepReport<D>& report) {
+  report.momentum = s.momentum;
+  const auto add = [&](const auto& set) {
+    for (std::size_t p = 0; p < set.size(); ++p) {
+      double speed2 = 0;
+      for (double c : set.v[p]) speed2 += c * c;
+      report.kinetic += 0.5 * set.mass[p] * speed2;
+      report.moving_mass += set.mass[p];
+      report.max_speed = std::max(report.max_speed, std::sqrt(speed2));
+    }
+  };
+  add(s.soil);
+  report.max_soil_speed = report.max_speed;
+  add(s.water);
+  for (std::size_t p = 0; p < s.soil.size(); ++p) report.strain += strain_energy(s, p);
+}
+
+template void measure_motion<2>(const State<2>&, StepReport<2>&);
+template void measure_motion<3>(const State<3>&, StepReport<3>&);
 template void faces_to_points<2>(State<2>&, double, StepReport<2>&);
 template void faces_to_points<3>(State<3>&, double, StepReport<3>&);
 

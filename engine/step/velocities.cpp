@@ -89,7 +89,10 @@ void predict_face(State<D>& s, int d, int face, double dt) {
   const bool water_open = !s.water_walls.closed(d, face);
   const bool water = water_open && sums.water_mass > kMassCutoff * rho * volume;
   f.wet = water_open && (s.cell[face].unknown >= 0 || s.cell[face - s.grid.stride[d]].unknown >= 0);
-  if (!soil && !water && !f.wet) return;
+  if (!soil && !water && !f.wet) {
+    s.soil_walls.set_separated(d, face, false);
+    return;
+  }
 
   // A face at the water surface stands for the wet part of its volume: what half a face of saturated soil
   // holds is dense over that half, and the pressure falls over that half only.
@@ -114,14 +117,14 @@ void predict_face(State<D>& s, int d, int face, double dt) {
     const double there = f.wet ? 1 : std::min(1.0, sums.water_mass / (volume * full));
     f.water_old = water ? sums.water_momentum / sums.water_mass : 0;
     b.water_mass = there * full;
-    const double viscous = water && s.constants.viscosity > 0 ? viscous_acceleration(s, d, face) : 0;
-    b.water_momentum = b.water_mass * (f.water_old + dt * (g + viscous));
+    f.viscous = water && s.constants.viscosity > 0 ? viscous_acceleration(s, d, face) : 0;
+    b.water_momentum = b.water_mass * (f.water_old + dt * (g + f.viscous));
     b.drag = dt * there * sums.drag / (part * volume);
     f.drag = b.drag / dt * part;
     const double share = f.wet ? sums.water_mass / (part * volume * full) : 1;
     b.water_drag = b.drag / std::max(share, kLeastWetPart);
-    b.fixed_drag *= there;
     f.fixed_drag = b.fixed_drag / dt;
+    b.fixed_drag *= there;
   }
 
   bool held = false;
@@ -135,8 +138,8 @@ void predict_face(State<D>& s, int d, int face, double dt) {
       solve_soil(b, dt, trial);
     const double leaving = trial.soil - trial.soil_response * pressure_gradient(s, d, face);
     held = !(leaving * leaving_direction(s, d, face) > 0);
-    s.soil_walls.set_separated(d, face, !held);
   }
+  s.soil_walls.set_separated(d, face, soil && s.soil_walls.closed(d, face) && !held);
   f.soil_held = held;
   const bool moving_soil = soil && !held;
   if (b.water_mass > 0 && moving_soil)
@@ -148,13 +151,22 @@ void predict_face(State<D>& s, int d, int face, double dt) {
   if (!water_open) f.water = f.water_response = 0;
 }
 
+/// Whether a wall lies between two neighbouring faces of component d, `side` of `face` along axis a ≠ d.
+template <int D>
+bool wall_between(const State<D>& s, int d, int face, int a, int side) {
+  const int offset = side * s.grid.stride[a];
+  return s.water_walls.closed(a, face + offset) || s.water_walls.closed(a, face - s.grid.stride[d] + offset);
+}
+
 /// Mean of the neighbours that know better, or false.
 template <int D>
 bool extrapolate(const State<D>& s, int d, int face, std::uint8_t level, double& value) {
   double sum = 0;
   int count = 0;
   for (int a = 0; a < D; ++a)
-    for (int other : {face - s.grid.stride[a], face + s.grid.stride[a]}) {
+    for (int side : {0, 1}) {
+      if (a != d && wall_between(s, d, face, a, side)) continue;
+      const int other = face + (2 * side - 1) * s.grid.stride[a];
       const FaceFlow& o = s.flow[d][other];
       // Faces of this level may be written meanwhile; their flag is then ≥ level or still 0.
       const std::uint8_t wet =
@@ -179,14 +191,15 @@ void predict_velocities(State<D>& s, double dt) {
 }
 
 template <int D>
-void correct_velocities(State<D>& s) {
+void correct_velocities(State<D>& s, double dt) {
   s.blocks.all([&](int b) {
     s.blocks.cells(s.grid, b, true, [&](int face, const Cell<D>&) {
       for (int d = 0; d < D; ++d) {
         FaceFlow& f = s.flow[d][face];
-        const double g = f.wet || f.soil_response > 0 ? pressure_gradient(s, d, face) : 0;
+        const double g = feels_pressure(s, d, face) ? pressure_gradient(s, d, face) : 0;
         if (f.wet) f.water -= f.water_response * g;
-        f.soil -= f.soil_response * (f.wet ? g : 0);
+        f.soil -= f.soil_response * g;
+        f.exchange = dt * f.drag * (f.water - f.soil);
         if (s.soil_walls.closed(d, face) && f.soil * leaving_direction(s, d, face) <= 0) f.soil = 0;
       }
     });
@@ -212,7 +225,7 @@ template double pressure_gradient<2>(const State<2>&, int, int);
 template double pressure_gradient<3>(const State<3>&, int, int);
 template void predict_velocities<2>(State<2>&, double);
 template void predict_velocities<3>(State<3>&, double);
-template void correct_velocities<2>(State<2>&);
-template void correct_velocities<3>(State<3>&);
+template void correct_velocities<2>(State<2>&, double);
+template void correct_velocities<3>(State<3>&, double);
 
 }  // namespace quicksand
