@@ -6,8 +6,9 @@
 
 #include "engine/grid/scene_grid.hpp"
 #include "engine/materials/stability.hpp"
+#include "engine/plan/step_bounds.hpp"
 #include "engine/points/seeding.hpp"
-#include "engine/run/time_step.hpp"
+#include "engine/scene/region.hpp"
 #include "engine/step/state.hpp"
 
 namespace quicksand {
@@ -17,26 +18,43 @@ namespace {
 /// cases/heave; only the estimate of the run's wall time depends on it.
 constexpr double kPointStepsPerSecond = 3e6;
 
-double initial_soil_limit(const Scene& scene, bool water, double h) {
+/// Whether the top of a body lies open to the air anywhere: no other wet body above its surface, looked at in
+/// every column of cells.
+bool reaches_air(const Scene& scene, const Body& body, double h) {
+  const Bounds bounds = bounding_box(body.region);
+  for (double x = bounds.min[0] + 0.5 * h; x < bounds.max[0]; x += h) {
+    double top = bounds.max[1] - 0.25 * h;
+    while (top > bounds.min[1] && !contains(body.region, {x, top, bounds.min[2]})) top -= 0.5 * h;
+    const Vec3 above{x, top + 0.5 * h, bounds.min[2]};
+    const bool covered = std::any_of(scene.bodies.begin(), scene.bodies.end(), [&](const Body& other) {
+      return other.kind != BodyKind::soil && contains(other.region, above);
+    });
+    if (!covered) return true;
+  }
+  return false;
+}
+
+double initial_soil_limit(const Scene& scene, double h) {
   double limit = std::numeric_limits<double>::infinity();
   for (const Body& body : scene.bodies) {
     if (body.kind == BodyKind::water || body.fixed) continue;
     const Soil& soil = scene.soils.at(body.soil);
     const double compliance = scene.water.bulk_modulus ? 1 / *scene.water.bulk_modulus : 0;
     const StepLimit limits(SoilMaterial::from(soil, scene.water), scene.water.density, compliance, h);
-    const bool wet = water && body.kind == BodyKind::saturated_soil;
-    limit = std::min(limit, wet ? limits.saturated(soil.porosity) : limits.dry(soil.porosity));
+    const bool confined = body.kind == BodyKind::saturated_soil && !reaches_air(scene, body, h);
+    limit = std::min(limit, confined ? limits.saturated(soil.porosity)
+                                     : std::min(limits.dry(soil.porosity), limits.saturated(soil.porosity)));
   }
   return limit;
 }
 
 template <int D>
-void count_points(const Scene& scene, Plan& plan) {
+void measure(const Scene& scene, Plan& plan) {
   const Grid<D> grid = make_grid<D>(scene);
-  const SeededPoints<D> points = seed<D>(scene, grid);
-  plan.soil_points = points.soil.size();
-  plan.fixed_soil_points = points.fixed.size();
-  plan.water_points = points.water.size();
+  const PointCounts points = count_points<D>(scene, grid);
+  plan.soil_points = points.soil;
+  plan.fixed_soil_points = points.fixed;
+  plan.water_points = points.water;
   for (int d = 0; d < D; ++d) plan.cells[d] = grid.cells[d];
   const double per_soil = 3 * sizeof(Vec<D>) + sizeof(Stress<D>) + 3 * sizeof(double) + 2 * sizeof(int) + 8;
   const double per_water = 3 * sizeof(Vec<D>) + sizeof(double) + sizeof(int) + 8;
@@ -67,9 +85,9 @@ Plan make_plan(const Scene& scene) {
   plan.dimensions = scene.domain.dimension == Dimension::space ? 3 : 2;
   plan.cell_size = scene.cell_size();
   if (plan.dimensions == 2)
-    count_points<2>(scene, plan);
+    measure<2>(scene, plan);
   else
-    count_points<3>(scene, plan);
+    measure<3>(scene, plan);
   plan.has_soil = plan.soil_points > 0;
   plan.has_water = plan.water_points > 0;
   plan.has_viscosity = plan.has_water && scene.water.viscosity > 0;
@@ -78,7 +96,7 @@ Plan make_plan(const Scene& scene) {
   double speed = 0;
   for (const Body& body : scene.bodies)
     speed = std::max(speed, std::hypot(body.velocity[0], body.velocity[1], body.velocity[2]));
-  const StepSituation start{initial_soil_limit(scene, plan.has_water, plan.cell_size), speed};
+  const StepSituation start{initial_soil_limit(scene, plan.cell_size), speed, plan.has_water};
   plan.bounds = step_bounds(scene, start);
   plan.bound = choose_step(scene, start);
   plan.time_step = plan.bound.seconds;

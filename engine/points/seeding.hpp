@@ -11,6 +11,13 @@ struct SeededPoints {
   WaterPoints<D> water;
 };
 
+struct PointCounts {
+  std::size_t soil = 0, fixed = 0, water = 0;
+};
+/// How many points `seed` would make, without making them.
+template <int D>
+PointCounts count_points(const Scene& scene, const Grid<D>& grid);
+
 /// Points of all bodies on a regular lattice, `points_per_cell` along each axis, each with the mass of its
 /// share of the cell. Saturated soil gets a soil and a water point at each place. `SoilPoints::soil` is the
 /// place of the material in Scene::soils.

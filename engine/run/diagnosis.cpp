@@ -65,7 +65,9 @@ std::string step_remedy(const Scene& scene) {
 
 template <int D>
 Failure not_finite(const Scene& scene, const State<D>& s) {
-  return describe(scene, s, "Velocities or stresses stopped being finite numbers, or no time step was short enough", step_remedy(scene));
+  return describe(scene, s,
+                  "Velocities or stresses stopped being finite numbers, or no time step was short enough",
+                  step_remedy(scene));
 }
 
 template <int D>

@@ -54,6 +54,16 @@ double water_level(const State<D>& s, const std::vector<int>& cells) {
   return std::isfinite(surface) ? surface : highest;
 }
 
+/// Whether the soil point `upper` does not rest on `lower`, the next one down its column: a gap or a wall
+/// between.
+template <int D>
+bool carries_nothing(const State<D>& s, std::size_t upper, std::size_t lower, double spacing) {
+  constexpr int up = D == 2 ? 1 : 2;
+  if (s.soil.x[upper][up] - s.soil.x[lower][up] > 1.5 * spacing) return true;
+  const Cell<D> a = s.grid.cell_of(s.soil.x[upper]), b = s.grid.cell_of(s.soil.x[lower]);
+  return a != b && s.soil_walls.closed(up, s.grid.index(a));
+}
+
 }  // namespace
 
 template <int D>
@@ -106,7 +116,7 @@ void set_initial_stress(const Scene& scene, State<D>& s) {
     if (k > 0) {
       auto a = column(order[k - 1]), b = column(p);
       a[D - 1] = b[D - 1] = 0;
-      if (a != b) above = 0;
+      if (a != b || carries_nothing(s, order[k - 1], p, spacing)) above = 0;
     }
     const SoilMaterial& m = s.constants.soils[soil.soil[p]];
     const bool wet = s.cell[s.grid.index(s.grid.cell_of(soil.x[p]))].unknown >= 0;

@@ -8,10 +8,10 @@
 #include <limits>
 #include <map>
 
+#include "engine/plan/step_bounds.hpp"
 #include "engine/run/diagnosis.hpp"
 #include "engine/run/frame.hpp"
 #include "engine/run/setup.hpp"
-#include "engine/run/time_step.hpp"
 #include "engine/run/watch.hpp"
 #include "engine/step/phases.hpp"
 
@@ -80,7 +80,8 @@ class Run {
   }
 
   bool step(double stage_end) {
-    const StepBound chosen = choose_step(scene_, {last_.soil_limit, last_.max_speed});
+    const StepBound chosen =
+        choose_step(scene_, {last_.soil_limit, last_.max_speed, state_.water.size() > 0});
     if (chosen.seconds < kCollapse * first_step(chosen.seconds))
       return fail(collapsed_step(scene_, state_, chosen));
     last_ = advance(state_, until_event(chosen.seconds, stage_end));

@@ -78,7 +78,7 @@ struct Ledger {
   std::array<double, 3> momentum_change{};            ///< N·s, Σ m v now less at the start
   std::array<double, 3> impulse_gravity{}, impulse_walls{}, impulse_loads{};  ///< N·s
   std::array<double, 3> impulse_surface{};  ///< N·s, to drops that the water surface carries along
-  double momentum_residual = 0;             ///< |change − Σ impulses| / ∫|weight| dt
+  double momentum_residual = 0;  ///< |change − Σ impulses| / (∫ |weight, loads| dt + |at the start|)
   double energy_kinetic = 0, energy_potential = 0, energy_strain = 0;  ///< J
   long clipped_points = 0;  ///< positions put back in front of a wall
   long clamped_values = 0;
@@ -98,7 +98,7 @@ struct HeaveReport {
 };
 
 struct Failure {
-  std::string code;               ///< "diverged", "output", "internal"
+  std::string code;               ///< "diverged", "max_steps", "output" (could not store)
   std::string message;            ///< when, where, which phase, likely cause, what to change
   double time = 0;                ///< s
   std::array<double, 3> place{};  ///< m

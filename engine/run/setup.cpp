@@ -27,8 +27,8 @@ Constants<D> make_constants(const Scene& scene, const Grid<D>& grid) {
   return c;
 }
 
-/// Markers every half cell along the top of a body: the highest soil points of each column, moved up by
-/// half their spacing.
+/// Markers along the top of a body, as close as its points: the highest soil points of each column, moved up
+/// by half their spacing.
 template <int D>
 SurfaceLoad<D> make_load(const Scene& scene, const Load& load, const State<D>& s) {
   SurfaceLoad<D> result;

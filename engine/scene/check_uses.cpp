@@ -74,14 +74,11 @@ void check_materials(const Scene& scene, Faults& faults) {
   const bool moving_soil = std::any_of(scene.bodies.begin(), scene.bodies.end(), [](const Body& body) {
     return body.kind != BodyKind::water && !body.fixed;
   });
-  const int down = scene.domain.dimension == Dimension::space ? 2 : 1;
-  for (int axis = 0; axis < 3; ++axis)
-    if (axis != down && scene.gravity[axis] != 0 && moving_soil &&
-        scene.initial.stress == InitialStress::k0) {
-      faults.push_back(
-          {"/initial/stress", "k0 needs gravity along the vertical axis only: use zero or uniform"});
-      break;
-    }
+  const bool tilted = scene.gravity[0] != 0 || scene.gravity[2] != 0;
+  if (tilted && moving_soil && scene.initial.stress == InitialStress::k0 &&
+      scene.domain.dimension != Dimension::space)
+    faults.push_back(
+        {"/initial/stress", "k0 needs gravity along the vertical axis only: use zero or uniform"});
 }
 
 }  // namespace quicksand

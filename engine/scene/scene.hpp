@@ -59,7 +59,7 @@ struct Soil {
 struct Water {
   double density = 1000;                       ///< kg/m³
   std::optional<double> bulk_modulus = 2.2e9;  ///< Pa; absent: incompressible
-  double viscosity = 1e-3;                     ///< Pa·s, of free water
+  double viscosity = 1e-3;                     ///< Pa·s
 };
 
 /// A set of places, in metres. `polygon` and `disc` are extruded along z in space.

@@ -40,8 +40,8 @@ void faces_to_points(State<D>& s, double dt, StepReport<D>& report);
 /// Momentum, energies, mass and largest speeds of the points as they are → `report`.
 template <int D>
 void measure_motion(const State<D>& s, StepReport<D>& report);
-/// Whether the grains (and open water) of a face are pushed by the pressure: at wet faces, and at walls next to
-/// water, where the gradient is that of still water.
+/// Whether the grains (and open water) of a face are pushed by the pressure: at wet faces, and at walls next
+/// to water, where the gradient is that of still water.
 template <int D>
 bool feels_pressure(const State<D>& s, int d, int face) {
   return s.flow[d][face].wet || s.water_walls.closed(d, face);

@@ -62,7 +62,8 @@ void assemble(State<D>& s, PressureSystem<D>& m, double dt) {
           if (side) m.coupling[d][r] = -beta;
         }
       }
-      if (diagonal <= 0) diagonal = 1, rhs = s.pressure[i];  // a closed cell of incompressible water: as it was
+      if (diagonal <= 0)
+        diagonal = 1, rhs = s.pressure[i];  // a closed cell of incompressible water: as it was
       m.diagonal[r] = diagonal;
       m.rhs[r] = rhs;
       m.solution[r] = s.pressure[i];
@@ -142,7 +143,8 @@ constexpr double kRounding = 1e-15;
 template <int D>
 double largest_term(const PressureSystem<D>& m) {
   double term = 0;
-  for (std::size_t r = 0; r < m.cell.size(); ++r) term = std::max(term, std::abs(m.diagonal[r] * m.solution[r]));
+  for (std::size_t r = 0; r < m.cell.size(); ++r)
+    term = std::max(term, std::abs(m.diagonal[r] * m.solution[r]));
   return term;
 }
 

@@ -51,8 +51,8 @@ struct FaceFlow {
 
   double drag = 0;        ///< N·s/m⁴ per cell volume, between the phases
   double fixed_drag = 0;  ///< N·s/m⁴ on the water, of grains that do not move
-  double exchange = 0;  ///< N·s/m³, impulse of the drag on the grains in this step
-  double viscous = 0;   ///< m/s², acceleration of the water by viscosity
+  double exchange = 0;    ///< N·s/m³, impulse of the drag on the grains in this step
+  double viscous = 0;     ///< m/s², acceleration of the water by viscosity
 
   double flux() const { return phi * soil + n * water; }
   double flux_response() const { return phi * soil_response + n * water_response; }

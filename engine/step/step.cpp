@@ -42,8 +42,8 @@ class Stopwatch {
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
-/// Velocities on the faces at the end of the step, and the pressure that goes with them. Returns the time that
-/// the step may take; 0 if there is none.
+/// Velocities on the faces at the end of the step, and the pressure that goes with them. Returns the time
+/// that the step may take; 0 if there is none.
 template <int D>
 double solve_velocities(State<D>& s, double dt, PressureReport& report, Stopwatch& clock) {
   s.pressure_old = s.pressure;

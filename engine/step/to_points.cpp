@@ -67,8 +67,8 @@ double mix(double own, double old_grid, double new_grid, double pic) {
   return (1 - pic) * (own + new_grid - old_grid) + pic * new_grid;
 }
 
-/// Distance above the water surface, in cells, from which a drop falls freely instead of moving with it. Points
-/// of a surface at rest lie a quarter of a cell below it.
+/// Distance above the water surface, in cells, from which a drop falls freely instead of moving with it.
+/// Points of a surface at rest lie a quarter of a cell below it.
 constexpr double kFreeHeight = 0.25;
 
 template <int D>

@@ -165,7 +165,12 @@ TEST(Check, TooManyEdgesAreRefusedRatherThanSlow) {
 }
 
 TEST(Check, HoldsForAnyGravity) {
-  EXPECT_EQ(after([](Scene& s) { s.gravity = {1, -9.7, 0}; }), Pointers{});
+  EXPECT_EQ(after([](Scene& s) { s.gravity = {1, -9.7, 0}; }), Pointers{"/initial/stress"});
+  EXPECT_EQ(after([](Scene& s) {
+              s.gravity = {1, -9.7, 0};
+              s.initial.stress = InitialStress::zero;
+            }),
+            Pointers{});
   EXPECT_EQ(after([](Scene& s) {
               s.gravity = {0, 0, 0};
               s.initial.water_table = 0.6;

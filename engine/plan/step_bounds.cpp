@@ -1,4 +1,4 @@
-#include "engine/run/time_step.hpp"
+#include "engine/plan/step_bounds.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,9 +12,9 @@ std::vector<StepBound> step_bounds(const Scene& scene, const StepSituation& now)
   if (std::isfinite(now.soil_limit)) bounds.push_back({"soil wave", now.soil_limit});
   if (now.max_speed > 0) bounds.push_back({"motion", 0.5 * h / now.max_speed});
   const double g = std::hypot(scene.gravity[0], scene.gravity[1], scene.gravity[2]);
-  if (g > 0) bounds.push_back({"surface wave", std::sqrt(h / g)});
+  if (now.has_water && g > 0) bounds.push_back({"surface wave", std::sqrt(h / g)});
   const double nu = scene.water.viscosity / scene.water.density;
-  if (nu > 0) bounds.push_back({"viscosity", h * h / (2 * dimensions * nu)});
+  if (now.has_water && nu > 0) bounds.push_back({"viscosity", h * h / (2 * dimensions * nu)});
   return bounds;
 }
 

@@ -10,6 +10,7 @@ namespace quicksand {
 struct StepSituation {
   double soil_limit = 0;  ///< s, smallest stability bound of any soil point; infinite without soil
   double max_speed = 0;   ///< m/s
+  bool has_water = true;
 };
 
 /// All bounds of the next time step, before the scene's safety factor; each with its name:
