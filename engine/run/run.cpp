@@ -107,7 +107,7 @@ class Run {
     for (const auto& [last, interval] : {std::pair{last_frame_time_, scene_.output.frame_interval},
                                          std::pair{last_sample_time_, scene_.output.series_interval}})
       rest = std::min(rest, next_event(last, interval) - state_.time);
-    if (rest <= dt) return rest;
+    if (rest <= dt * (1 + kTimeRounding)) return rest;
     return rest < 2 * dt ? 0.5 * rest : dt;
   }
   static double next_event(double last, double interval) {
