@@ -61,6 +61,7 @@ TEST(Drop, IsNotHeldThroughAThinWall) {
   stage.name = "fall";
   stage.duration = 0.1;
   s.stages = {stage};
+  s.numerics.time_step = 1e-4;
   const Recorded r = record(s);
   const Frame& last = r.results.frames.back();
   for (std::size_t p = 0; p < last.points(); ++p)
