@@ -212,9 +212,18 @@ TEST_F(Floor, SeparatedMatterKeepsTheSignOfItsNormalVelocity) {
   const Vec<2> x{2.5, 0.2};
   EXPECT_LT(value<2>(grid, walls, x, 1, one), 1 - 1e-3);
   for (int c = 0; c < 6; ++c) walls.set_separated(1, grid.index({c, 0}), true);
+  EXPECT_LT(value<2>(grid, walls, x, 1, one), 1 - 1e-3);  // one step folds with one sign
+  walls.commit_separated();
   EXPECT_NEAR(value<2>(grid, walls, x, 1, one), 1, 1e-15);
   for (int c = 0; c < 6; ++c) walls.set_separated(1, grid.index({c, 0}), false);
+  walls.commit_separated();
   EXPECT_LT(value<2>(grid, walls, x, 1, one), 1 - 1e-3);
+}
+
+TEST_F(Floor, ClosedTwiceItIsRoughIfEitherIs) {
+  walls.close(1, grid.index({2, 0}), true);
+  walls.close(1, grid.index({2, 0}), false);
+  EXPECT_TRUE(walls.no_slip(1, grid.index({2, 0})));
 }
 
 TEST(Folds, SideWallMirrorsTheOtherAxis) {

@@ -23,9 +23,9 @@ void expect_free_fall(const Scene& scene) {
     for (std::size_t p = 0; p < set.size(); ++p)
       for (int d = 0; d < D; ++d) {
         const bool down = d == kUp<D>;
-        EXPECT_NEAR(set.v[p][d], down ? g * t : 0, 1e-9);
+        EXPECT_NEAR(set.v[p][d], down ? g * t : 0, 1e-7);
         // Symplectic Euler: Σ k dt² g.
-        EXPECT_NEAR(set.x[p][d] - set.start[p][d], down ? g * dt * dt * 50 * 51 / 2 : 0, 1e-9);
+        EXPECT_NEAR(set.x[p][d] - set.start[p][d], down ? g * dt * dt * 50 * 51 / 2 : 0, 1e-8);
       }
   };
   check(s.soil), check(s.water);
@@ -73,8 +73,7 @@ double ledger_residual(const Scene& scene, int steps, double dt, double least_wa
     keeper.add(s, r);
     worst = std::max(worst, keeper.ledger().momentum_residual);
   });
-  keeper.measure(s);
-  EXPECT_EQ(keeper.ledger().water_mass, water);  // to the bit: points keep their mass
+  EXPECT_EQ(total(s.water.mass), water);  // to the bit: points keep their mass
   EXPECT_EQ(total(s.soil.mass), solid);
   EXPECT_EQ(s.water.size() + s.soil.size(), points);
   double wall = 0;
@@ -95,16 +94,34 @@ Scene submerged_bank(double floor) {
 
 constexpr double kClosed = 1e-12;  // of the impulse of weight; rounding
 
+TEST(MomentumLedger, ClosesWhileABankAndAPoolCollapse) {
+  EXPECT_LT(ledger_residual<2>(collapse(), 300, 2e-4, 1), kClosed);
+}
+
+TEST(MomentumLedger, CountsViscosityAtRoughWalls) {
+  Scene s = plane(1, 1, 0.05);
+  s.water.viscosity = 10;
+  add_body(s, "drop", BodyKind::water, {0.3, 0.2, 0}, {0.7, 0.5, 0});
+  s.initial.pressure = InitialPressure::zero;
+  for (Side& side : s.domain.sides) side.kind = SideKind::no_slip;
+  EXPECT_LT(ledger_residual<2>(s, 400, 5e-4, 10), kClosed);
+}
+
 TEST(MomentumLedger, ClosesWhileASubmergedBankSlides) {
   EXPECT_LT(ledger_residual<2>(submerged_bank(0), 300, 2e-4, 1), kClosed);
 }
 
-TEST(MomentumLedger, ClosesWhileAPoolAndADryBankCollapse) {
+TEST(MomentumLedger, ClosesWhileAPoolCollapses) {
   Scene s = collapse();
   s.water.viscosity = 0;
-  s.bodies.erase(s.bodies.begin());
-  s.bodies.back().region.min[0] = 0.9;  // out of reach of each other
-  EXPECT_LT(ledger_residual<2>(s, 150, 2e-4, 1), kClosed);
+  s.bodies = {s.bodies[1]};
+  EXPECT_LT(ledger_residual<2>(s, 300, 2e-4, 1), kClosed);
+}
+
+TEST(MomentumLedger, ClosesWhileADryBankCollapses) {
+  Scene s = collapse();
+  s.bodies = {s.bodies[2]};
+  EXPECT_LT(ledger_residual<2>(s, 300, 2e-4, 1), kClosed);
 }
 
 TEST(MomentumLedger, ClosesWhileABlockFallsOntoTheFloor) {

@@ -99,8 +99,7 @@ TEST(Pressure, CorrectedVelocitiesBalanceTheMass) {
   for_each_cell(s.grid, [&](int i, const Cell<2>&) {
     if (s.cell[i].unknown >= 0) before = std::max(before, std::abs(inflow(s, i)));
   });
-  ASSERT_TRUE(solve_pressure(s, dt).converged);
-  correct_velocities(s);
+  ASSERT_TRUE(advance(s, dt).pressure.converged);
   double open = 0;
   for_each_cell(s.grid, [&](int i, const Cell<2>&) {
     if (s.cell[i].unknown < 0) return;
