@@ -111,6 +111,14 @@ void expect_levels_follow_the_flow(const Scene& scene, const Recorded& r) {
   EXPECT_LT(worst, 0.005 * r.report.ledger.water_volume_initial);
 }
 
+/// What holds in every run under the full head.
+void expect_sound_run(const Scene& scene, const Recorded& r) {
+  expect_equilibrium(scene, r, 0.46);
+  expect_conservation(r);
+  expect_no_leak(scene, r);
+  expect_levels_follow_the_flow(scene, r);
+}
+
 /// The layer has risen and left a gap: away from the walls no grain lies within `gap` above the filter.
 void expect_heave(const Recorded& r, double least_rise, double gap) {
   ASSERT_EQ(r.report.heave.size(), 1u);
@@ -146,10 +154,7 @@ void expect_loosened_surface(const Recorded& r) {
 TEST(Heave, EquilibriumThenTheGapOpens) {
   const Scene scene = shortened("heave", 0.5);
   const Recorded r = record(scene);
-  expect_equilibrium(scene, r, 0.46);
-  expect_conservation(r);
-  expect_no_leak(scene, r);
-  expect_levels_follow_the_flow(scene, r);
+  expect_sound_run(scene, r);
   expect_heave(r, 0.0015, 0.004);
 }
 
@@ -157,10 +162,7 @@ TEST(Heave, EquilibriumThenTheGapOpens) {
 TEST(Heave, SmoothWallsLetItRiseAsAPlug) {
   const Scene scene = shortened("heave-smooth-walls", 0.5);
   const Recorded r = record(scene);
-  expect_equilibrium(scene, r, 0.46);
-  expect_conservation(r);
-  expect_no_leak(scene, r);
-  expect_levels_follow_the_flow(scene, r);
+  expect_sound_run(scene, r);
   expect_heave(r, 0.01, 0.005);
 }
 
@@ -200,10 +202,7 @@ TEST(Heave, ReducedBulkModulusRisesAlike) {
 TEST(SlowHeave, DraftToTheEnd) {
   const Scene scene = load("heave", Preset::draft);
   const Recorded r = record(scene);
-  expect_equilibrium(scene, r, 0.46);
-  expect_conservation(r);
-  expect_no_leak(scene, r);
-  expect_levels_follow_the_flow(scene, r);
+  expect_sound_run(scene, r);
   expect_heave(r, 0.015, 0.01);
   expect_loosened_surface(r);
 }
@@ -222,10 +221,7 @@ TEST(SlowHeave, LowHeadForFiveSeconds) {
 TEST(SlowHeave, StandardTellsTheSameStory) {
   const Scene scene = load("heave", Preset::standard);
   const Recorded r = record(scene), draft = record(load("heave", Preset::draft));
-  expect_equilibrium(scene, r, 0.46);
-  expect_conservation(r);
-  expect_no_leak(scene, r);
-  expect_levels_follow_the_flow(scene, r);
+  expect_sound_run(scene, r);
   expect_heave(r, 0.015, 0.01);
   expect_loosened_surface(r);
   // Rough walls hold the sand within half a cell of them, so the coarse grid is held more: 20 % less rise.
