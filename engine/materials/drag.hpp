@@ -18,6 +18,11 @@ struct Drag {
     const double grains = (1 - n) / (1 - porosity);
     return at_reference * grains * grains * porosity / n;
   }
+
+  /// Pressure gradient per discharge, R/n² = ρw g/k (N·s/m⁴). This is what adds up along a flow path, so
+  /// faces average it and multiply by their own n²: a layer's edges, half soil and half water, then resist as
+  /// half.
+  double resistivity(double n) const { return resistance(n) / (n * n); }
 };
 
 }  // namespace quicksand

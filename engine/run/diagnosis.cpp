@@ -87,6 +87,17 @@ Failure pressure_not_found(const Scene& scene, const State<D>& s, double residua
                       ") below what rounding allows: raise it to 1e-6 or refine domain.cell_size.");
 }
 
+template <int D>
+Failure unstable_step(const Scene& scene, const State<D>& s, double bound) {
+  return describe(scene, s,
+                  "A step of " + number(*scene.numerics.time_step) +
+                      " s is above the stability bound of the soil wave, " + number(bound) + " s,",
+                  step_remedy(scene));
+}
+
+template Failure unstable_step<2>(const Scene&, const State<2>&, double);
+template Failure unstable_step<3>(const Scene&, const State<3>&, double);
+
 Failure too_many_steps(const Scene& scene, double time) {
   return {"max_steps",
           "The run reached numerics.max_steps = " + std::to_string(scene.numerics.max_steps) +

@@ -84,6 +84,7 @@ class Run {
         choose_step(scene_, {last_.soil_limit, last_.max_speed, state_.water.size() > 0});
     if (chosen.seconds < kCollapse * first_step(chosen.seconds))
       return fail(collapsed_step(scene_, state_, chosen));
+    if (chosen.seconds > last_.soil_limit) return fail(unstable_step(scene_, state_, last_.soil_limit));
     last_ = advance(state_, until_event(chosen.seconds, stage_end));
     ++report_.steps;
     report_.time_step_min = report_.steps == 1 ? last_.dt : std::min(report_.time_step_min, last_.dt);

@@ -23,7 +23,7 @@ struct FaceSums {
   double soil_bulk = 0;       ///< m³, grains and pores
   double soil_momentum = 0;   ///< kg·m/s
   double soil_force = 0;      ///< N, of the effective stress
-  double drag = 0;            ///< N·s/m, bulk volume × R
+  double resistivity = 0;     ///< N·s/m, bulk volume × ρw g/k
   double water_mass = 0;      ///< kg
   double water_momentum = 0;  ///< kg·m/s
 };
@@ -36,8 +36,8 @@ struct FaceImage {
 
 /// What grains that never move occupy and resist; computed once.
 struct FixedFace {
-  double phi = 0;   ///< –
-  double drag = 0;  ///< N·s/m⁴
+  double phi = 0, bulk = 0;  ///< –, grains; grains and pores
+  double resistivity = 0;    ///< N·s/m⁴, ρw g/k over the part that is soil
 };
 
 /// Velocities of a face and how they answer to a pressure gradient G: v = v̂ − response·G.

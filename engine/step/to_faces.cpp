@@ -22,7 +22,7 @@ void soil_to_faces(State<D>& s, std::uint32_t p) {
   const PointKernel<D> kernel(s.grid, soil.x[p]);
   const double mass = soil.mass[p], n = soil.porosity[p];
   const double grains = mass / material.grain_density, bulk = grains / (1 - n);
-  const double drag = s.water.size() ? bulk * material.drag.resistance(n) : 0;
+  const double resistivity = s.water.size() ? bulk * material.drag.resistivity(n) : 0;
   for (int d = 0; d < D; ++d) {
     const Vec<D> stress = stress_row<D>(soil.stress[p], d);
     const double momentum = mass * soil.v[p][d];
@@ -35,7 +35,7 @@ void soil_to_faces(State<D>& s, std::uint32_t p) {
       f.soil_bulk += w * bulk;
       f.soil_momentum += sign * w * momentum;
       f.soil_force -= sign * bulk * divergence;  // [FMS19] eq. (1), ∇·σ′ in its weak form
-      f.drag += w * drag;
+      f.resistivity += w * resistivity;
       if (sign < 0) s.image[d][face].soil += 2 * w * mass;
     });
   }
@@ -116,11 +116,12 @@ void measure_fixed(State<D>& s) {
     const SoilMaterial& material = s.constants.soils[s.fixed.soil[p]];
     const PointKernel<D> kernel(s.grid, s.fixed.x[p]);
     const double n = s.fixed.porosity[p], grains = s.fixed.mass[p] / material.grain_density;
-    const double bulk = grains / (1 - n), drag = material.drag.resistance(n);
+    const double bulk = grains / (1 - n), resistivity = material.drag.resistivity(n);
     for (int d = 0; d < D; ++d)
       for_faces(s.grid, s.soil_walls, kernel, d, [&](int face, double w, double, const Vec<D>&) {
         s.fixed_face[d][face].phi += w * grains / volume;
-        s.fixed_face[d][face].drag += w * bulk * drag / volume;
+        s.fixed_face[d][face].bulk += w * bulk / volume;
+        s.fixed_face[d][face].resistivity += w * bulk * resistivity / volume;
       });
     for_centers(s.grid, s.water_walls, kernel, [&](int cell, double w) {
       s.fixed_cell[cell].grains += w * grains;

@@ -74,8 +74,10 @@ template <int D>
 double wet_part(const State<D>& s, int d, int face) {
   if (s.cell[face].unknown >= 0 && s.cell[face - s.grid.stride[d]].unknown >= 0) return 1;
   const FaceSums& f = s.sums[d][face];
-  const double volume = s.grid.cell_volume(), bulk = f.soil_bulk / volume;
-  const double fill = fill_of(f.water_mass / (s.constants.water_density * volume), f.grains / volume, bulk);
+  const double volume = s.grid.cell_volume();
+  const FixedFace fixed = s.fixed.size() ? s.fixed_face[d][face] : FixedFace{};
+  const double grains = f.grains / volume + fixed.phi, bulk = f.soil_bulk / volume + fixed.bulk;
+  const double fill = fill_of(f.water_mass / (s.constants.water_density * volume), grains, bulk);
   return std::clamp(std::max(fill, bulk), kLeastWetPart, 1.0);
 }
 
@@ -99,10 +101,10 @@ void predict_face(State<D>& s, int d, int face, double dt) {
   const double part = f.wet ? wet_part(s, d, face) : 1;
   Balance b;
   f.phi = sums.grains / (part * volume);
-  double fixed_phi = 0;
+  double fixed_phi = 0, fixed_resistivity = 0;
   if (s.fixed.size()) {
-    fixed_phi = s.fixed_face[d][face].phi;
-    b.fixed_drag = dt * s.fixed_face[d][face].drag;
+    fixed_phi = s.fixed_face[d][face].phi / part;
+    fixed_resistivity = s.fixed_face[d][face].resistivity / part;
   }
   f.n = std::max(1 - f.phi - fixed_phi, kMinRoom);
   if (soil) {
@@ -119,12 +121,12 @@ void predict_face(State<D>& s, int d, int face, double dt) {
     b.water_mass = there * full;
     f.viscous = water && s.constants.viscosity > 0 ? viscous_acceleration(s, d, face) : 0;
     b.water_momentum = b.water_mass * (f.water_old + dt * (g + f.viscous));
-    b.drag = dt * there * sums.drag / (part * volume);
+    b.drag = dt * there * f.n * f.n * sums.resistivity / (part * volume);
     f.drag = b.drag / dt * part;
     const double share = f.wet ? sums.water_mass / (part * volume * full) : 1;
     b.water_drag = b.drag / std::max(share, kLeastWetPart);
-    f.fixed_drag = b.fixed_drag / dt;
-    b.fixed_drag *= there;
+    f.fixed_drag = f.n * f.n * fixed_resistivity;
+    b.fixed_drag = dt * there * f.fixed_drag;
   }
 
   bool held = false;

@@ -36,16 +36,20 @@ bool says(const std::string& message, const std::string& what) {
   return message.find(what) != std::string::npos;
 }
 
-TEST(Failure, AFixedStepFarTooLargeIsCutAndLeavesNumbers) {
-  for (const double step : {0.05, 0.5}) {  // 40 and 400 times the bound
-    Scene s = bank(0.2);
-    s.numerics.time_step = step;
-    s.numerics.max_steps = 2000;
-    const auto r = test::record(s);
-    EXPECT_LT(r.report.time_step_max, 0.0101);  // no step passes a sample
-    EXPECT_GT(r.report.ledger.cut_steps, 0);
-    expect_clean(r.results);
-  }
+TEST(Failure, AFixedStepFarTooLargeDiverges) {
+  Scene s = bank(1000);
+  s.numerics.time_step = 0.05;  // 40 times the bound
+  s.numerics.max_steps = 5000;
+  const auto r = test::record(s);
+  ASSERT_EQ(r.report.status, RunStatus::failed);
+  EXPECT_EQ(r.report.failure.code, "diverged");
+  const std::string& m = r.report.failure.message;
+  EXPECT_TRUE(says(m, "t = ")) << m;                 // when
+  EXPECT_TRUE(says(m, "near (")) << m;               // where
+  EXPECT_TRUE(says(m, "soil of body 'bank'")) << m;  // which phase
+  EXPECT_TRUE(says(m, "numerics.time_step")) << m;   // cause
+  EXPECT_TRUE(says(m, "leave it out")) << m;         // remedy
+  expect_clean(r.results);
 }
 
 TEST(Failure, TooManySteps) {
