@@ -80,10 +80,10 @@ int run_command(const RunCommand& command) {
   return done.report.status == RunStatus::succeeded ? exit_status::ok : exit_status::failed;
 }
 
-int check_command(const std::string& case_file) {
+int check_command(const std::string& case_file, const std::optional<Preset>& preset) {
   const auto text = read_case_file(case_file);
   if (!text) return exit_status::bad_input;
-  const ParsedCase parsed = parse_case(*text);
+  const ParsedCase parsed = parse_case(*text, preset);
   if (!parsed.scene) {
     print_faults(case_file, parsed.faults);
     return exit_status::bad_input;

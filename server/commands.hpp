@@ -23,7 +23,7 @@ struct RunCommand {
 };
 int run_command(const RunCommand& command);
 
-int check_command(const std::string& case_file);
+int check_command(const std::string& case_file, const std::optional<Preset>& preset);
 
 struct SubmitCommand {
   std::string case_file, url, label;

@@ -27,6 +27,7 @@ struct CommandLine {
   std::string check_case;
   SubmitCommand submit;
   ServeOptions serve;
+  std::optional<Preset> check_preset;
   std::string port = "8080", id, out, url = "http://127.0.0.1:8080";
   spdlog::level::level_enum log_level = spdlog::level::info;
   int status = 0;
@@ -69,7 +70,8 @@ void add_local_commands(CLI::App& app, CommandLine& line) {
 
   CLI::App* check = app.add_subcommand("check", "print what a case would compute, or its faults");
   check->add_option("CASE", line.check_case, "case file (JSON)")->required();
-  check->callback([&line] { line.status = check_command(line.check_case); });
+  add_preset(check, line.check_preset);
+  check->callback([&line] { line.status = check_command(line.check_case, line.check_preset); });
 }
 
 void add_serve_command(CLI::App& app, CommandLine& line) {

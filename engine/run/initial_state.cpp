@@ -76,7 +76,7 @@ void set_initial_pressure(const Scene& scene, State<D>& s) {
   for_each_cell(s.grid, [&](int i, const Cell<D>&) {
     if (s.cell[i].unknown < 0 || seen[i]) return;
     const std::vector<int> cells = connected_water(s, i, seen);
-    const double level = scene.initial.water_table.value_or(water_level(s, cells));
+    const double level = water_level(s, cells);
     for (int c : cells) {
       const double depth = level - elevation<D>(s.constants.gravity, s.grid.center(s.grid.cell(c)));
       s.pressure[c] = scene.initial.pressure == InitialPressure::uniform ? scene.initial.uniform_pressure

@@ -5,7 +5,7 @@
 namespace quicksand {
 
 /// Pore pressure of still water: in each connected body of water from its own highest free surface (its
-/// highest cell if it has none), or from the given water table. Requires find_surface.
+/// highest cell if it has none). Requires find_surface.
 template <int D>
 void set_initial_pressure(const Scene& scene, State<D>& state);
 

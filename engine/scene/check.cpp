@@ -55,6 +55,8 @@ void check_supported(const Scene& scene, Faults& faults) {
     refuse(soil.model.law == SoilLaw::modified_cam_clay, at_soil(name, "/model/law"), "modified_cam_clay");
     refuse(soil.model.tension_cutoff.has_value(), at_soil(name, "/model/tension_cutoff"), "tension_cutoff");
   }
+  refuse(scene.initial.water_table && scene.gravity != Vec3{0, 0, 0}, "/initial/water_table",
+         "a given water table");
   refuse(!scene.reservoirs.empty(), "/reservoirs", "a reservoir");
   for (std::size_t k = 0; k < scene.loads.size(); ++k)
     refuse(scene.loads[k].kind == Load::Kind::plate, at_index("loads", k, "/kind"), "a plate load");

@@ -205,6 +205,7 @@ const Mutation not_supported_yet[] = {
      {"/materials/soils/sand/model/tension_cutoff"}},
     {"LinearKernel", ADD("/numerics/kernel", R"("linear")"), {"/numerics/kernel"}},
     {"Apic", ADD("/numerics/transfer", R"("apic")"), {"/numerics/transfer"}},
+    {"WaterTable", ADD("/initial/water_table", "0.3"), {"/initial/water_table"}},
     {"Damping", ADD("/stages/0/damping", "0.2"), {"/stages/0/damping"}},
     {"SidewaysGravityWithK0", ADD("/gravity", "[1, -9.81]"), {"/initial/stress"}},
     {"QuasiStatic", ADD("/stages/0/quasi_static", "true"), {"/stages/0/quasi_static"}},

@@ -25,7 +25,7 @@ TEST(RoundTrip, ResolvedCaseIsAFixedPoint) {
       R"([{"op":"add","path":"/materials/water/bulk_modulus","value":"incompressible"}])",
       R"([{"op":"add","path":"/numerics/time_step","value":1.0000000000000001e-4}])",
       R"([{"op":"replace","path":"/initial","value":{"pressure":"uniform","uniform_pressure":12.5,"stress":"uniform","uniform_stress":[-1,-2,-3,0]}}])",
-      R"([{"op":"replace","path":"/initial","value":{"water_table":0.3,"stress":"zero"}}])",
+      R"([{"op":"replace","path":"/initial","value":{"stress":"zero"}}])",
       R"([{"op":"replace","path":"/bodies/4/region","value":{"disc":{"center":[0.45,0.4],"radius":0.1}}}])",
       R"([{"op":"replace","path":"/stages/0/loads","value":null}])",
       // Only water: keys of soil have no effect and must not be written.
