@@ -28,14 +28,6 @@ std::string with(const char* key, Choice choice) {
 
 void check_sides(const Place& sides, const Domain& domain) {
   if (domain.dimension != Dimension::space) idle(sides, {"front", "back"}, "in the plane");
-  for (std::size_t k = 0; k < side_words.size(); ++k) {
-    const Place side = sides[side_words[k]];
-    if (!side.given() || side["kind"].refused()) continue;
-    if (domain.sides[k].kind == SideKind::reservoir)
-      needed(side, {"head"}, with("kind", domain.sides[k].kind));
-    else
-      idle(side, {"head"}, with("kind", domain.sides[k].kind));
-  }
 }
 
 void check_permeability(const Place& soil, PermeabilityLaw law, bool water) {

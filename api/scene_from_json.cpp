@@ -10,9 +10,7 @@ void read_domain(const Place& place, Reading& reading, Domain& domain) {
   place["max"].read(domain.max);
   place["cell_size"].read(domain.cell_size);
   for (std::size_t k = 0; k < side_words.size(); ++k) {
-    const Place side = place["sides"][side_words[k]];
-    side["kind"].read(domain.sides[k].kind);
-    side["head"].read(domain.sides[k].head);
+    place["sides"][side_words[k]]["kind"].read(domain.sides[k].kind);
   }
 }
 

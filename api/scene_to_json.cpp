@@ -61,10 +61,8 @@ Json Writer::region(const Region& r) const {
 Json Writer::domain() const {
   const Domain& d = scene.domain;
   Json sides = Json::object();
-  for (std::size_t k = 0; k < 2 * dimensions; ++k) {
+  for (std::size_t k = 0; k < 2 * dimensions; ++k)
     sides[side_words[k]]["kind"] = word_of(d.sides[k].kind);
-    if (d.sides[k].kind == SideKind::reservoir) sides[side_words[k]]["head"] = d.sides[k].head;
-  }
   return {{"dimension", word_of(d.dimension)},
           {"min", vector(d.min)},
           {"max", vector(d.max)},

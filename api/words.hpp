@@ -19,12 +19,13 @@ constexpr Words<Dimension, 3> words_of(Dimension) {
 constexpr Words<SideKind, 4> words_of(SideKind) {
   return {{{SideKind::slip, "slip"},
            {SideKind::no_slip, "no_slip"},
-           {SideKind::open, "open"},
-           {SideKind::reservoir, "reservoir"}}};
+           {SideKind::symmetry, "symmetry"},
+           {SideKind::open, "open"}}};
 }
-constexpr Words<PermeabilityLaw, 3> words_of(PermeabilityLaw) {
+constexpr Words<PermeabilityLaw, 4> words_of(PermeabilityLaw) {
   return {{{PermeabilityLaw::constant, "constant"},
            {PermeabilityLaw::kozeny_carman, "kozeny_carman"},
+           {PermeabilityLaw::power, "power"},
            {PermeabilityLaw::ergun, "ergun"}}};
 }
 constexpr Words<SoilLaw, 3> words_of(SoilLaw) {

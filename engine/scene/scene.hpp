@@ -15,11 +15,11 @@ using Vec3 = std::array<double, 3>;
 
 enum class Dimension { plane_strain, axisymmetric, space };
 
-/// What happens to soil and water at one side of the domain.
-enum class SideKind { slip, no_slip, open, reservoir };
+/// What happens to soil and water at one side of the domain. slip and no_slip are walls that grains may
+/// leave; symmetry holds the normal velocity both ways; open lets both phases out.
+enum class SideKind { slip, no_slip, symmetry, open };
 struct Side {
   SideKind kind = SideKind::slip;
-  double head = 0;  ///< m, elevation of the water level outside; reservoir only
 };
 
 struct Domain {
@@ -30,22 +30,31 @@ struct Domain {
   std::array<Side, 6> sides{};  ///< left right bottom top front back (−x +x −y +y −z +z)
 };
 
-enum class PermeabilityLaw { constant, kozeny_carman, ergun };
+/// power: k = value · [(1+e)/(1+e0)]^exponent with the void ratio e = n/(1−n).
+enum class PermeabilityLaw { constant, kozeny_carman, power, ergun };
 struct Permeability {
   PermeabilityLaw law = PermeabilityLaw::kozeny_carman;
   double value = 0;       ///< m/s, hydraulic conductivity at the initial porosity
+  double exponent = 2;    ///< –, power only
   double grain_size = 0;  ///< m, ergun only
 };
 
 enum class SoilLaw { linear_elastic, mohr_coulomb, modified_cam_clay };
 struct SoilModel {
   SoilLaw law = SoilLaw::linear_elastic;
-  double young_modulus = 0;              ///< Pa
-  double poisson_ratio = 0;              ///< –
-  double friction_angle = 0;             ///< degrees
-  double dilation_angle = 0;             ///< degrees
-  double cohesion = 0;                   ///< Pa
-  std::optional<double> tension_cutoff;  ///< Pa, largest tension; absent: the cone's apex
+  double young_modulus = 0;                 ///< Pa
+  double poisson_ratio = 0;                 ///< –
+  double friction_angle = 0;                ///< degrees
+  double dilation_angle = 0;                ///< degrees
+  double cohesion = 0;                      ///< Pa
+  std::optional<double> tension_cutoff;     ///< Pa, largest tension; absent: the cone's apex
+  std::optional<double> residual_cohesion;  ///< Pa, after softening; absent: cohesion stays
+  double softening_strain = 0;  ///< –, plastic shear strain over which cohesion falls to residual
+  // modified_cam_clay: poisson_ratio and these.
+  double compression_slope = 0;         ///< –, λ, of e over ln p′ in virgin compression
+  double swelling_slope = 0;            ///< –, κ, of e over ln p′ in unloading
+  double critical_state_slope = 0;      ///< –, M, of q over p′ at critical state
+  double over_consolidation_ratio = 1;  ///< –, preconsolidation over the yield pressure of the initial stress
 };
 
 struct Soil {
@@ -54,6 +63,8 @@ struct Soil {
   std::optional<double> max_porosity;  ///< –, grains lose contact above it
   Permeability permeability;
   SoilModel model;
+  std::optional<double>
+      k0;  ///< –, horizontal over vertical effective stress at the start; wins over Initial::k0
 };
 
 struct Water {
@@ -100,10 +111,11 @@ struct Gate {
   Segment line;
 };
 
-/// A stretch of the domain's boundary that is connected to water of given level.
+/// A stretch of the domain's boundary that is connected to water of given level: water enters and leaves,
+/// grains stay. Above the level it is a seepage face, where water only leaves.
 struct Reservoir {
   std::string name;
-  Segment line;
+  Segment line;     ///< in space: a rectangle by two opposite corners
   double head = 0;  ///< m, elevation of the level
 };
 
@@ -118,7 +130,7 @@ struct Initial {
   std::array<double, 6> uniform_stress{};  ///< Pa, xx yy zz xy yz zx, effective
 };
 
-/// Pressure-like load on the top surface of a body, or a rigid plate on it.
+/// Pressure-like load on the top surface of a body, or a rigid plate on it that water does not pass.
 struct Load {
   enum class Kind { traction, plate } kind = Kind::traction;
   std::string name;
@@ -126,9 +138,9 @@ struct Load {
   Vec3 traction{};                  ///< Pa, per horizontal area
   double ramp = 0;                  ///< s, linear rise from the start of the stage that sets it
   Vec3 plate_velocity{};            ///< m/s
-  std::optional<Vec3> plate_force;  ///< N/m
-  Segment plate;
-  bool rough = false;
+  std::optional<Vec3> plate_force;  ///< N (per metre in the plane, per radian about an axis)
+  Segment plate;                    ///< on cell faces at the start; in space a rectangle
+  bool rough = false;               ///< the soil does not slide along it
 };
 
 struct UntilRest {
@@ -141,11 +153,12 @@ struct Stage {
   double duration = 0;  ///< s; with until_rest: at most
   std::optional<UntilRest> until_rest;
   std::vector<std::string> open_gates;            ///< all others are closed
-  std::map<std::string, double> heads;            ///< reservoir → m
+  std::map<std::string, double> heads;            ///< reservoir → m, kept in later stages
+  double heads_ramp = 0;                          ///< s, over which heads go linearly to their new values
   std::optional<std::vector<std::string>> loads;  ///< acting in this stage; absent: all
   std::vector<std::string> remove_bodies;
-  double damping = 0;  ///< –, fraction of the out-of-balance force (local damping)
-  bool quasi_static = false;
+  double damping = 0;         ///< –, fraction of the out-of-balance force (local damping)
+  bool quasi_static = false;  ///< scale inertia, never weight, so that slow processes take few steps
 };
 
 struct Probe {
@@ -189,6 +202,8 @@ struct Numerics {
   std::optional<double> time_step;   ///< s; absent: chosen each step
   double time_step_factor = 0.8;     ///< –, of the stability bound
   double drift_time = 0.05;          ///< s, over which true volume drift is fed back; 0: never
+  /// –, how often a wave crosses the soil within the process's own time in a quasi-static stage.
+  double quasi_static_transits = 200;
   long max_steps = 100'000'000;
 };
 

@@ -191,9 +191,7 @@ const Mutation of_sense[] = {
 const Mutation not_supported_yet[] = {
     {"Axisymmetric", ADD("/domain/dimension", R"("axisymmetric")"), {"/domain/dimension"}},
     {"OpenSide", ADD("/domain/sides/top", R"({"kind":"open"})"), {"/domain/sides/top/kind"}},
-    {"ReservoirSide",
-     ADD("/domain/sides/left", R"({"kind":"reservoir","head":0.5})"),
-     {"/domain/sides/left/kind"}},
+    {"SymmetrySide", ADD("/domain/sides/left", R"({"kind":"symmetry"})"), {"/domain/sides/left/kind"}},
     {"Ergun",
      ADD("/materials/soils/sand/permeability", R"({"law":"ergun","grain_size":5e-4})"),
      {"/materials/soils/sand/permeability/law"}},

@@ -36,7 +36,8 @@ inline Scene space(const Vec3& size, double h, double duration = 1) {
 inline Soil sand() {
   Soil soil;
   soil.permeability.value = 1e-4;
-  soil.model = {SoilLaw::mohr_coulomb, 1e7, 0.3, 30, 0, 0, {}};
+  soil.model = {
+      .law = SoilLaw::mohr_coulomb, .young_modulus = 1e7, .poisson_ratio = 0.3, .friction_angle = 30};
   return soil;
 }
 

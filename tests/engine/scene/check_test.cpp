@@ -20,7 +20,11 @@ Scene basin() {
   s.domain.cell_size = 0.1;
   Soil sand;
   sand.permeability.value = 1e-4;
-  sand.model = {SoilLaw::mohr_coulomb, 1e7, 0.3, 30, 5, 0, {}};
+  sand.model = {.law = SoilLaw::mohr_coulomb,
+                .young_modulus = 1e7,
+                .poisson_ratio = 0.3,
+                .friction_angle = 30,
+                .dilation_angle = 5};
   s.soils["sand"] = sand;
   s.bodies = {{"sand", BodyKind::saturated_soil, "sand", box(0, 0, 1, 0.3), false, {}},
               {"water", BodyKind::water, "", box(0, 0.3, 1, 0.6), false, {}}};
