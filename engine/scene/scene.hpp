@@ -42,13 +42,13 @@ struct Permeability {
 enum class SoilLaw { linear_elastic, mohr_coulomb, modified_cam_clay };
 struct SoilModel {
   SoilLaw law = SoilLaw::linear_elastic;
-  double young_modulus = 0;                 ///< Pa
-  double poisson_ratio = 0;                 ///< –
-  double friction_angle = 0;                ///< degrees
-  double dilation_angle = 0;                ///< degrees
-  double cohesion = 0;                      ///< Pa
-  std::optional<double> tension_cutoff;     ///< Pa, largest tension; absent: the cone's apex
-  std::optional<double> residual_cohesion;  ///< Pa, after softening; absent: cohesion stays
+  double young_modulus = 0;                   ///< Pa
+  double poisson_ratio = 0;                   ///< –
+  double friction_angle = 0;                  ///< degrees
+  double dilation_angle = 0;                  ///< degrees
+  double cohesion = 0;                        ///< Pa
+  std::optional<double> tension_cutoff{};     ///< Pa, largest tension; absent: the cone's apex
+  std::optional<double> residual_cohesion{};  ///< Pa, after softening; absent: cohesion stays
   double softening_strain = 0;  ///< –, plastic shear strain over which cohesion falls to residual
   // modified_cam_clay: poisson_ratio and these.
   double compression_slope = 0;         ///< –, λ, of e over ln p′ in virgin compression
