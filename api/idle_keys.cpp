@@ -38,13 +38,27 @@ void check_permeability(const Place& soil, PermeabilityLaw law, bool water) {
   const bool ergun = law == PermeabilityLaw::ergun;
   needed(place, {ergun ? "grain_size" : "value"}, with("law", law));
   idle(place, {ergun ? "value" : "grain_size"}, with("law", law));
+  if (law != PermeabilityLaw::power) idle(place, {"exponent"}, with("law", law));
 }
 
-void check_model(const Place& model, SoilLaw law) {
-  if (!model.given() || model["law"].refused()) return;
-  if (law == SoilLaw::mohr_coulomb) needed(model, {"friction_angle"}, with("law", law));
-  if (law == SoilLaw::linear_elastic)
-    idle(model, {"friction_angle", "dilation_angle", "cohesion", "tension_cutoff"}, with("law", law));
+void check_model(const Place& place, const SoilModel& model) {
+  if (!place.given() || place["law"].refused()) return;
+  static constexpr Keys stiffness{"young_modulus"},
+      slopes{"compression_slope", "swelling_slope", "critical_state_slope"};
+  static constexpr Keys cone{"friction_angle", "dilation_angle",    "cohesion",
+                             "tension_cutoff", "residual_cohesion", "softening_strain"};
+  const std::string why = with("law", model.law);
+  const bool cam_clay = model.law == SoilLaw::modified_cam_clay;
+  needed(place, cam_clay ? slopes : stiffness, why);
+  idle(place, cam_clay ? stiffness : slopes, why);
+  if (!cam_clay) idle(place, {"over_consolidation_ratio"}, why);
+  if (model.law != SoilLaw::mohr_coulomb) return idle(place, cone, why);
+  needed(place, {"friction_angle"}, why);
+  if (place["residual_cohesion"].refused()) return;
+  if (model.residual_cohesion)
+    needed(place, {"softening_strain"}, "with residual_cohesion");
+  else
+    idle(place, {"softening_strain"}, "without residual_cohesion");
 }
 
 void check_body(const Place& place, const Body& body) {
@@ -90,7 +104,14 @@ void check_load(const Place& place, const Load& load) {
     needed(place, {"plate_velocity"}, "without plate_force");
 }
 
-void check_numerics(const Place& place, const Numerics& numerics, bool water) {
+void check_stage(const Place& place, const Stage& stage, bool soil) {
+  if (!soil) idle(place, {"damping", "quasi_static"}, "in a scene without soil");
+  if (stage.heads.empty() && !place["heads"].broken()) idle(place, {"heads_ramp"}, "without heads");
+}
+
+void check_numerics(const Place& place, const Scene& scene, bool water) {
+  const Numerics& numerics = scene.numerics;
+  if (!has_quasi_static(scene)) idle(place, {"quasi_static_transits"}, "without a quasi_static stage");
   if (numerics.transfer != Transfer::flip) idle(place, {"pic_rate"}, with("transfer", numerics.transfer));
   if (numerics.time_step) idle(place, {"time_step_factor"}, "with a fixed time_step");
   if (!water)
@@ -111,14 +132,20 @@ bool has_soil(const Scene& scene) {
                      [](const Body& b) { return b.kind != BodyKind::water; });
 }
 
+bool has_quasi_static(const Scene& scene) {
+  return std::any_of(scene.stages.begin(), scene.stages.end(), [](const Stage& s) { return s.quasi_static; });
+}
+
 void check_choices(const nlohmann::json& document, const Scene& scene, Reading& reading) {
   const Place root(document, reading);
   const bool water = has_water(scene), soil = has_soil(scene);
   check_sides(root["domain"]["sides"], scene.domain);
   for (const auto& [name, place] : root["materials"]["soils"].items()) {
     if (!place.given()) continue;
+    if (scene.initial.stress != InitialStress::k0)
+      idle(place, {"k0"}, "with initial.stress " + std::string(word_of(scene.initial.stress)));
     check_permeability(place, scene.soils.at(name).permeability.law, water);
-    check_model(place["model"], scene.soils.at(name).model.law);
+    check_model(place["model"], scene.soils.at(name).model);
   }
   if (!water) idle(root["materials"], {"water"}, "in a scene without water");
   const auto bodies = root["bodies"].items();
@@ -126,9 +153,9 @@ void check_choices(const nlohmann::json& document, const Scene& scene, Reading& 
   check_initial(root["initial"], scene.initial, water, soil);
   const auto loads = root["loads"].items();
   for (std::size_t k = 0; k < loads.size(); ++k) check_load(loads[k].second, scene.loads[k]);
-  for (const auto& [index, stage] : root["stages"].items())
-    if (!soil) idle(stage, {"damping"}, "in a scene without soil");
-  check_numerics(root["numerics"], scene.numerics, water);
+  const auto stages = root["stages"].items();
+  for (std::size_t k = 0; k < stages.size(); ++k) check_stage(stages[k].second, scene.stages[k], soil);
+  check_numerics(root["numerics"], scene, water);
 }
 
 }  // namespace quicksand

@@ -18,9 +18,11 @@ void read_soil(const Place& place, Soil& soil) {
   place["grain_density"].read(soil.grain_density);
   place["porosity"].read(soil.porosity);
   place["max_porosity"].read(soil.max_porosity);
+  place["k0"].read(soil.k0);
   const Place permeability = place["permeability"];
   permeability["law"].read(soil.permeability.law);
   permeability["value"].read(soil.permeability.value);
+  permeability["exponent"].read(soil.permeability.exponent);
   permeability["grain_size"].read(soil.permeability.grain_size);
   const Place model = place["model"];
   model["law"].read(soil.model.law);
@@ -30,6 +32,12 @@ void read_soil(const Place& place, Soil& soil) {
   model["dilation_angle"].read(soil.model.dilation_angle);
   model["cohesion"].read(soil.model.cohesion);
   model["tension_cutoff"].read(soil.model.tension_cutoff);
+  model["residual_cohesion"].read(soil.model.residual_cohesion);
+  model["softening_strain"].read(soil.model.softening_strain);
+  model["compression_slope"].read(soil.model.compression_slope);
+  model["swelling_slope"].read(soil.model.swelling_slope);
+  model["critical_state_slope"].read(soil.model.critical_state_slope);
+  model["over_consolidation_ratio"].read(soil.model.over_consolidation_ratio);
 }
 
 void read_materials(const Place& place, Scene& scene) {
@@ -91,6 +99,7 @@ void read(const Place& place, Stage& stage) {
   }
   place["open_gates"].read(stage.open_gates);
   for (const auto& [name, head] : place["heads"].items()) head.read(stage.heads[name]);
+  place["heads_ramp"].read(stage.heads_ramp);
   if (const Place loads = place["loads"]; loads.is_list()) loads.read(stage.loads.emplace());
   place["remove_bodies"].read(stage.remove_bodies);
   place["damping"].read(stage.damping);
@@ -158,6 +167,7 @@ void read_numerics(const Place& place, const std::optional<Preset>& preset, Nume
   place["time_step"].read(numerics.time_step);
   place["time_step_factor"].read(numerics.time_step_factor);
   place["drift_time"].read(numerics.drift_time);
+  place["quasi_static_transits"].read(numerics.quasi_static_transits);
   place["max_steps"].read(numerics.max_steps);
 }
 

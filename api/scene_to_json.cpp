@@ -22,6 +22,7 @@ struct Writer {
   Json region(const Region& r) const;
   Json domain() const;
   Json soil_of(const Soil& s) const;
+  Json model(const SoilModel& m) const;
   Json materials() const;
   Json body(const Body& b) const;
   Json wall(const Wall& w) const;
@@ -61,8 +62,7 @@ Json Writer::region(const Region& r) const {
 Json Writer::domain() const {
   const Domain& d = scene.domain;
   Json sides = Json::object();
-  for (std::size_t k = 0; k < 2 * dimensions; ++k)
-    sides[side_words[k]]["kind"] = word_of(d.sides[k].kind);
+  for (std::size_t k = 0; k < 2 * dimensions; ++k) sides[side_words[k]]["kind"] = word_of(d.sides[k].kind);
   return {{"dimension", word_of(d.dimension)},
           {"min", vector(d.min)},
           {"max", vector(d.max)},
@@ -79,16 +79,31 @@ Json Writer::soil_of(const Soil& s) const {
     json["permeability"] = {{"law", word_of(s.permeability.law)}};
     json["permeability"][ergun ? "grain_size" : "value"] =
         ergun ? s.permeability.grain_size : s.permeability.value;
+    if (s.permeability.law == PermeabilityLaw::power)
+      json["permeability"]["exponent"] = s.permeability.exponent;
   }
-  Json& model = json["model"];
-  model = {{"law", word_of(s.model.law)},
-           {"young_modulus", s.model.young_modulus},
-           {"poisson_ratio", s.model.poisson_ratio}};
-  if (s.model.law == SoilLaw::mohr_coulomb) {
-    model["friction_angle"] = s.model.friction_angle;
-    model["dilation_angle"] = s.model.dilation_angle;
-    model["cohesion"] = s.model.cohesion;
-    model["tension_cutoff"] = optional(s.model.tension_cutoff);
+  if (scene.initial.stress == InitialStress::k0) json["k0"] = optional(s.k0);
+  json["model"] = model(s.model);
+  return json;
+}
+
+Json Writer::model(const SoilModel& m) const {
+  Json json{{"law", word_of(m.law)}};
+  if (m.law != SoilLaw::modified_cam_clay) json["young_modulus"] = m.young_modulus;
+  json["poisson_ratio"] = m.poisson_ratio;
+  if (m.law == SoilLaw::mohr_coulomb) {
+    json["friction_angle"] = m.friction_angle;
+    json["dilation_angle"] = m.dilation_angle;
+    json["cohesion"] = m.cohesion;
+    json["tension_cutoff"] = optional(m.tension_cutoff);
+    json["residual_cohesion"] = optional(m.residual_cohesion);
+    if (m.residual_cohesion) json["softening_strain"] = m.softening_strain;
+  }
+  if (m.law == SoilLaw::modified_cam_clay) {
+    json["compression_slope"] = m.compression_slope;
+    json["swelling_slope"] = m.swelling_slope;
+    json["critical_state_slope"] = m.critical_state_slope;
+    json["over_consolidation_ratio"] = m.over_consolidation_ratio;
   }
   return json;
 }
@@ -162,11 +177,16 @@ Json Writer::stage(const Stage& s) const {
     json["until_rest"] = {{"speed", s.until_rest->speed}, {"at_least", s.until_rest->at_least}};
   json["open_gates"] = s.open_gates;
   json["heads"] = Json(s.heads);
-  if (s.heads.empty()) json["heads"] = Json::object();
+  if (s.heads.empty())
+    json["heads"] = Json::object();
+  else
+    json["heads_ramp"] = s.heads_ramp;
   json["loads"] = s.loads ? Json(*s.loads) : Json(nullptr);
   json["remove_bodies"] = s.remove_bodies;
-  if (soil) json["damping"] = s.damping;
-  json["quasi_static"] = s.quasi_static;
+  if (soil) {
+    json["damping"] = s.damping;
+    json["quasi_static"] = s.quasi_static;
+  }
   return json;
 }
 
@@ -203,6 +223,7 @@ Json Writer::numerics() const {
   }
   json["time_step"] = optional(n.time_step);
   if (!n.time_step) json["time_step_factor"] = n.time_step_factor;
+  if (has_quasi_static(scene)) json["quasi_static_transits"] = n.quasi_static_transits;
   json["max_steps"] = n.max_steps;
   return json;
 }

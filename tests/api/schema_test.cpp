@@ -121,6 +121,10 @@ TEST(Schema, DefaultsAreAllowedValuesAndThoseOfTheScene) {
   EXPECT_EQ(default_of("soil", "grain_density"), Soil{}.grain_density);
   EXPECT_EQ(default_of("soil", "porosity"), Soil{}.porosity);
   EXPECT_EQ(default_of("permeability", "law"), word_of(Permeability{}.law));
+  EXPECT_EQ(default_of("permeability", "exponent"), Permeability{}.exponent);
+  EXPECT_EQ(default_of("soil_model", "over_consolidation_ratio"), SoilModel{}.over_consolidation_ratio);
+  EXPECT_EQ(default_of("stage", "heads_ramp"), Stage{}.heads_ramp);
+  EXPECT_EQ(default_of("numerics", "quasi_static_transits"), Numerics{}.quasi_static_transits);
   EXPECT_EQ(default_of("water", "density"), Water{}.density);
   EXPECT_EQ(default_of("water", "bulk_modulus"), *Water{}.bulk_modulus);
   EXPECT_EQ(default_of("water", "viscosity"), Water{}.viscosity);
