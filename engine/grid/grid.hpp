@@ -14,6 +14,9 @@ using Vec = std::array<double, D>;
 template <int D>
 using Cell = std::array<int, D>;
 
+/// Axis that points up where gravity does not say: y, in the plane and in space alike.
+inline constexpr int kUp = 1;
+
 template <int D>
 struct Grid {
   static constexpr int pad = 2;  ///< cells beyond the domain; a quadratic kernel reaches 1.5 h

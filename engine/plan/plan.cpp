@@ -22,15 +22,21 @@ constexpr double kPointStepsPerSecond = 3e6;
 /// every column of cells.
 bool reaches_air(const Scene& scene, const Body& body, double h) {
   const Bounds bounds = bounding_box(body.region);
-  for (double x = bounds.min[0] + 0.5 * h; x < bounds.max[0]; x += h) {
-    double top = bounds.max[1] - 0.25 * h;
-    while (top > bounds.min[1] && !contains(body.region, {x, top, bounds.min[2]})) top -= 0.5 * h;
-    const Vec3 above{x, top + 0.5 * h, bounds.min[2]};
-    const bool covered = std::any_of(scene.bodies.begin(), scene.bodies.end(), [&](const Body& other) {
-      return other.kind != BodyKind::soil && contains(other.region, above);
-    });
-    if (!covered) return true;
-  }
+  const int dimensions = scene.domain.dimension == Dimension::space ? 3 : 2;
+  // Polygons and discs are extruded over the whole depth; a plane has one slice.
+  const double front = dimensions == 2 ? 0 : std::max(bounds.min[2], scene.domain.min[2]);
+  const double back = dimensions == 2                 ? h
+                      : bounds.max[2] > bounds.min[2] ? bounds.max[2]
+                                                      : scene.domain.max[2];
+  for (double z = front + 0.5 * h; z < back; z += h)
+    for (double x = bounds.min[0] + 0.5 * h; x < bounds.max[0]; x += h) {
+      double top = bounds.max[1] - 0.25 * h;
+      while (top > bounds.min[1] && !contains(body.region, {x, top, z}, dimensions)) top -= 0.5 * h;
+      const bool covered = std::any_of(scene.bodies.begin(), scene.bodies.end(), [&](const Body& other) {
+        return other.kind != BodyKind::soil && contains(other.region, {x, top + 0.5 * h, z}, dimensions);
+      });
+      if (!covered && contains(body.region, {x, top, z}, dimensions)) return true;
+    }
   return false;
 }
 

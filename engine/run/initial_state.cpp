@@ -58,10 +58,9 @@ double water_level(const State<D>& s, const std::vector<int>& cells) {
 /// between.
 template <int D>
 bool carries_nothing(const State<D>& s, std::size_t upper, std::size_t lower, double spacing) {
-  constexpr int up = D == 2 ? 1 : 2;
-  if (s.soil.x[upper][up] - s.soil.x[lower][up] > 1.5 * spacing) return true;
+  if (s.soil.x[upper][kUp] - s.soil.x[lower][kUp] > 1.5 * spacing) return true;
   const Cell<D> a = s.grid.cell_of(s.soil.x[upper]), b = s.grid.cell_of(s.soil.x[lower]);
-  return a != b && s.soil_walls.closed(up, s.grid.index(a));
+  return a != b && s.soil_walls.closed(kUp, s.grid.index(a));
 }
 
 }  // namespace
@@ -95,14 +94,13 @@ void set_initial_stress(const Scene& scene, State<D>& s) {
     return;
   }
   // Columns of seeding places, each from the top down.
-  constexpr int up = D == 2 ? 1 : 2;
   const double spacing = s.grid.h / scene.numerics.points_per_cell;
-  const double g = -s.constants.gravity[up];
+  const double g = -s.constants.gravity[kUp];
   const auto column = [&](std::size_t p) {
     std::array<long, D> key;
     for (int d = 0; d < D; ++d) {
       const double k = std::floor((soil.x[p][d] - s.grid.origin[d]) / spacing);
-      key[d == up ? D - 1 : d == D - 1 ? up : d] = static_cast<long>(d == up ? -k : k);
+      key[d == kUp ? D - 1 : d == D - 1 ? kUp : d] = static_cast<long>(d == kUp ? -k : k);
     }
     return key;
   };
@@ -129,7 +127,7 @@ void set_initial_stress(const Scene& scene, State<D>& s) {
     const double natural = m.law == SoilLaw::linear_elastic ? nu / (1 - nu) : 1 - m.mohr_coulomb.sin_phi;
     const double k0 = scene.initial.k0.value_or(natural);
     soil.stress[p] = {};
-    for (int d = 0; d < 3; ++d) soil.stress[p][d] = d == up ? -vertical : -k0 * vertical;
+    for (int d = 0; d < 3; ++d) soil.stress[p][d] = d == kUp ? -vertical : -k0 * vertical;
   }
 }
 

@@ -1,6 +1,7 @@
 #include "engine/run/setup.hpp"
 
 #include <cmath>
+#include <map>
 
 #include "engine/grid/scene_grid.hpp"
 #include "engine/points/seeding.hpp"
@@ -31,22 +32,20 @@ Constants<D> make_constants(const Scene& scene, const Grid<D>& grid) {
 /// by half their spacing.
 template <int D>
 SurfaceLoad<D> make_load(const Scene& scene, const Load& load, const State<D>& s) {
-  SurfaceLoad<D> result;
   const double spacing = s.grid.h / scene.numerics.points_per_cell;
+  std::map<std::array<long, D>, Vec<D>> tops;  // by column of seeding places
   for (std::size_t p = 0; p < s.soil.size(); ++p) {
     if (scene.bodies[s.soil.body[p]].name != load.body) continue;
-    Vec<D> top = s.soil.x[p];
-    top[D == 2 ? 1 : 2] += 0.5 * spacing;
-    bool replaced = false;
-    for (Vec<D>& m : result.marker) {
-      bool same_column = true;
-      for (int d = 0; d < D; ++d)
-        if (d != (D == 2 ? 1 : 2)) same_column = same_column && std::abs(m[d] - top[d]) < 0.5 * spacing;
-      if (!same_column) continue;
-      m[D == 2 ? 1 : 2] = std::max(m[D == 2 ? 1 : 2], top[D == 2 ? 1 : 2]);
-      replaced = true;
-    }
-    if (!replaced) result.marker.push_back(top);
+    std::array<long, D> column{};
+    for (int d = 0; d < D; ++d)
+      if (d != kUp) column[d] = static_cast<long>(std::floor((s.soil.x[p][d] - s.grid.origin[d]) / spacing));
+    Vec<D>& top = tops.try_emplace(column, s.soil.x[p]).first->second;
+    if (s.soil.x[p][kUp] > top[kUp]) top = s.soil.x[p];
+  }
+  SurfaceLoad<D> result;
+  for (auto& [column, top] : tops) {
+    top[kUp] += 0.5 * spacing;
+    result.marker.push_back(top);
   }
   const double area = D == 2 ? spacing : spacing * spacing;
   for (int d = 0; d < D; ++d) result.force[d] = load.traction[d] * area;

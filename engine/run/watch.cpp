@@ -15,13 +15,13 @@ Vec<D> place(const Vec3& at) {
   return x;
 }
 
-/// Upward unit vector, against gravity; the last axis without gravity.
+/// Upward unit vector, against gravity; y without gravity.
 template <int D>
 Vec<D> up(const Vec<D>& gravity) {
   double g = 0;
   for (double c : gravity) g += c * c;
   Vec<D> u{};
-  u[D - 1] = 1;
+  u[kUp] = 1;
   if (g > 0)
     for (int d = 0; d < D; ++d) u[d] = -gravity[d] / std::sqrt(g);
   return u;

@@ -28,7 +28,6 @@ inline Scene space(const Vec3& size, double h, double duration = 1) {
   Scene s = plane(size[0], size[1], h, duration);
   s.domain.dimension = Dimension::space;
   s.domain.max = size;
-  s.gravity = {0, 0, -9.81};
   return s;
 }
 
@@ -52,9 +51,5 @@ inline void add_body(Scene& s, const std::string& name, BodyKind kind, const Vec
   }
   s.bodies.push_back(body);
 }
-
-/// Height above the floor's axis: y in the plane, z in space.
-template <int D>
-inline constexpr int kUp = D - 1;
 
 }  // namespace quicksand::test

@@ -154,10 +154,6 @@ TEST(Check, ReservoirsAndSectionsLieOnTheirLines) {
                                 "/reservoirs/0/line", "/stages/0/heads", "/stages/0/heads/sea"}));
 }
 
-TEST(Check, SpaceIsRefusedOnce) {
-  EXPECT_EQ(after([](Scene& s) { s.domain.dimension = Dimension::space; }), Pointers{"/domain/dimension"});
-}
-
 TEST(Check, TooManyEdgesAreRefusedRatherThanSlow) {
   EXPECT_EQ(after([](Scene& s) {
               Region many;

@@ -28,11 +28,11 @@ StepReport<D> advance_times(State<D>& s, int steps, double dt) {
 /// Largest difference of the pressure in wet cells from ρw g × depth below `level`, of ρw g × h.
 template <int D>
 double pressure_error(const State<D>& s, double level) {
-  const double g = -s.constants.gravity[kUp<D>], weight = s.constants.water_density * g;
+  const double g = -s.constants.gravity[kUp], weight = s.constants.water_density * g;
   double worst = 0;
   for_each_cell(s.grid, [&](int i, const Cell<D>& c) {
     if (s.cell[i].unknown < 0) return;
-    const double expected = weight * (level - s.grid.center(c)[kUp<D>]);
+    const double expected = weight * (level - s.grid.center(c)[kUp]);
     worst = std::max(worst, std::abs(s.pressure[i] - expected) / std::max(expected, weight * s.grid.h));
   });
   return worst;

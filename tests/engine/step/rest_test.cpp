@@ -45,8 +45,8 @@ TEST(Rest, SurfaceWithinACell) {
 }
 
 TEST(Rest, TankOfWaterInSpace) {
-  Scene s = space({0.4, 0.3, 0.6}, 0.1);
-  add_body(s, "pool", BodyKind::water, {0, 0, 0}, {0.4, 0.3, 0.4});
+  Scene s = space({0.4, 0.6, 0.3}, 0.1);
+  add_body(s, "pool", BodyKind::water, {0, 0, 0}, {0.4, 0.4, 0.3});
   expect_rest<3>(s, 0.4, 5e-3, 4 * 3 * 4);
 }
 
@@ -88,9 +88,9 @@ TEST(Rest, SandUnderWaterSettlesUnseen) {
 }
 
 TEST(Rest, SandUnderWaterSettlesUnseenInSpace) {
-  Scene s = space({0.2, 0.2, 0.6}, 0.1);
+  Scene s = space({0.2, 0.6, 0.2}, 0.1);
   add_body(s, "bed", BodyKind::saturated_soil, {0, 0, 0}, {0.2, 0.2, 0.2});
-  add_body(s, "pool", BodyKind::water, {0, 0, 0.2}, {0.2, 0.2, 0.4});
+  add_body(s, "pool", BodyKind::water, {0, 0.2, 0}, {0.2, 0.4, 0.2});
   expect_settles<3>(s, 0.4, 2000);
 }
 
