@@ -1,113 +1,135 @@
 // One-dimensional consolidation of an elastic column under a load on its drained top, no gravity:
-// K. Terzaghi's series for the excess pressure at the base, p/q = Σ 2/M sin M exp(−M² T), M = (2m+1)π/2.
+// K. Terzaghi's series for the excess pressure, p/q = Σ 2/M sin(M z/H) exp(−M² T), M = (2m+1)π/2, and the
+// degree of consolidation U = 1 − Σ 2/M² exp(−M² T); z from the drained top.
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "tests/verification/recorder.hpp"
+#include "tests/verification/book.hpp"
 
 namespace quicksand::test {
 namespace {
 
-constexpr double kLoad = 1e4, kHeight = 1, kYoung = 1e7, kPoisson = 0.3;
+constexpr double kLoad = 1e3, kHeight = 1, kYoung = 1e7, kPoisson = 0.3;  // of cases/terzaghi
+constexpr double kModulus = kYoung * (1 - kPoisson) / ((1 + kPoisson) * (1 - 2 * kPoisson));
+/// From here on errors count: before, the load's wave crosses the column (T = 0.017 at k = 1e-3 m/s).
+constexpr double kFirstT = 0.05;
 
-double base_pressure(double t) {
+double pressure(double t, double z) {
   double sum = 0;
   for (int m = 0; m < 200; ++m) {
     const double a = (2 * m + 1) * std::numbers::pi / 2;
-    sum += 2 / a * std::sin(a) * std::exp(-a * a * t);
+    sum += 2 / a * std::sin(a * z) * std::exp(-a * a * t);
   }
   return sum;
 }
 
-double constrained_modulus() { return kYoung * (1 - kPoisson) / ((1 + kPoisson) * (1 - 2 * kPoisson)); }
+double consolidation(double t) {
+  double sum = 0;
+  for (int m = 0; m < 200; ++m) {
+    const double a = (2 * m + 1) * std::numbers::pi / 2;
+    sum += 2 / (a * a) * std::exp(-a * a * t);
+  }
+  return 1 - sum;
+}
 
+/// The case with another permeability, over T = 0…1, on a column two cells wide.
 Scene column(double permeability, int cells) {
-  Scene s;
-  s.name = "Terzaghi";
-  const double h = kHeight / cells;
+  Scene s = load_case("terzaghi", 20.0 / cells);
+  const double h = s.cell_size(), seconds = kHeight * kHeight * 9810 / (permeability * kModulus);
   s.domain.max = {2 * h, kHeight + 4 * h, 0};
-  s.domain.cell_size = h;
-  s.gravity = {0, 0, 0};
-  Soil soil;
-  soil.permeability = {PermeabilityLaw::constant, permeability, 0};
-  soil.model.young_modulus = kYoung;
-  soil.model.poisson_ratio = kPoisson;
-  s.soils["soil"] = soil;
-  Body body;
-  body.name = "column";
-  body.kind = BodyKind::saturated_soil;
-  body.soil = "soil";
-  body.region = box(0, 0, 2 * h, kHeight);
-  s.bodies = {body};
-  Load load;
-  load.name = "load";
-  load.body = "column";
-  load.traction = {0, -kLoad, 0};
-  s.loads = {load};
-  s.initial.pressure = InitialPressure::uniform;
-  s.initial.uniform_pressure = kLoad;
-  s.initial.stress = InitialStress::zero;
-  Stage stage;
-  stage.name = "consolidation";
-  stage.duration = kHeight * kHeight * 9810 / (permeability * constrained_modulus());  // T = 1
-  s.stages = {stage};
-  s.output.frame_interval = stage.duration;
-  s.output.series_interval = stage.duration / 200;
-  Probe probe;
-  probe.name = "base";
-  probe.at = {h, 1e-6, 0};
-  probe.quantity = "pore_pressure";
-  s.output.probes = {probe};
+  s.bodies[0].region.max[0] = 2 * h;
+  s.output.probes[0].at[0] = h;
+  s.soils.at("soil").permeability.value = permeability;
+  s.stages[0].duration = seconds;
+  s.output.frame_interval = seconds / 100;
+  s.output.series_interval = seconds / 200;
   return s;
 }
 
-/// Largest |p/q − series| for T ≥ 0.05.
-double largest_error(double permeability, int cells) {
-  const Recorded r = record(column(permeability, cells));
-  EXPECT_EQ(r.report.status, RunStatus::succeeded) << r.report.failure.message;
-  EXPECT_EQ(r.report.ledger.clipped_points + r.report.ledger.clamped_values + r.report.ledger.cut_steps, 0);
+/// Settlement of the surface, continued from the displacements of the two highest rows of points.
+double settlement(const Frame& frame, double spacing) {
+  const auto& u = field(frame, "displacement");
+  double first = 0, second = 0;
+  for (std::size_t p = 0; p < frame.points(); ++p) {
+    if (frame.phase[p] != 0) continue;
+    const double z = kHeight - (frame.position[3 * p + 1] - u[3 * p + 1]);  // at the start
+    if (z < spacing)
+      first = -u[3 * p + 1];
+    else if (z < 2 * spacing)
+      second = -u[3 * p + 1];
+  }
+  return first + 0.5 * (first - second);
+}
+
+struct Errors {
+  double pressure = 0, consolidation = 0;
+};
+
+Errors run_column(Page& page, double permeability, int cells, bool curves) {
+  const Recorded r = page.run(column(permeability, cells));
+  Errors e;
+  const double spacing = kHeight / cells / 2;
+  const double end = r.results.times.back();
+  Curve base{"Excess pressure at the base", "T", "p/q", "", {}, {}},
+      degree{"Degree of consolidation", "T", "U", "", {}, {}};
   const auto p = r.results.series("probe.base");
-  double worst = 0;
   for (std::size_t i = 0; i < p.size(); ++i) {
-    const double t = r.results.times[i] / r.results.times.back();
-    if (t >= 0.05) worst = std::max(worst, std::abs(p[i] / kLoad - base_pressure(t)));
+    const double t = r.results.times[i] / end;
+    if (t >= kFirstT) e.pressure = std::max(e.pressure, std::abs(p[i] / kLoad - pressure(t, 1)));
+    base.x.push_back(t), base.result.push_back(p[i] / kLoad), base.reference.push_back(pressure(t, 1));
   }
-  ::testing::Test::RecordProperty("largest_error", std::to_string(worst));
-  std::printf("k = %g m/s, %d cells: largest error %.5f\n", permeability, cells, worst);
-  return worst;
-}
-
-/// Required is 0.015; measured is 0.0035. A figure half as large again would be a change to look at.
-constexpr double kTolerance = 0.005;
-
-TEST(Terzaghi, BasePressureFollowsTheSeries) {
-  EXPECT_LT(largest_error(1e-4, 20), kTolerance);
-  EXPECT_LT(largest_error(1e-5, 20), kTolerance);
-}
-
-TEST(Terzaghi, FinerCellsAreCloser) { EXPECT_LT(largest_error(1e-4, 20), 0.6 * largest_error(1e-4, 5)); }
-
-/// Settlement at the end: U(1) q H / Ec, on the surface.
-TEST(Terzaghi, SettlesAsMuchAsTheSeriesSays) {
-  const Recorded r = record(column(1e-4, 20));
-  double consolidation = 1;
-  for (int m = 0; m < 200; ++m) {
-    const double a = (2 * m + 1) * std::numbers::pi / 2;
-    consolidation -= 2 / (a * a) * std::exp(-a * a);
-  }
-  const Frame& last = r.results.frames.back();
-  const auto& u = field(last, "displacement");
-  double top = 0, height = 0;
-  for (std::size_t p = 0; p < last.points(); ++p)
-    if (last.phase[p] == 0 && last.position[3 * p + 1] > height) {
-      height = last.position[3 * p + 1];
-      top = -u[3 * p + 1];
+  for (const Frame& frame : r.results.frames) {
+    const double t = frame.time / end, u = settlement(frame, spacing) * kModulus / (kLoad * kHeight);
+    degree.x.push_back(t), degree.result.push_back(u), degree.reference.push_back(consolidation(t));
+    if (t < kFirstT) continue;
+    e.consolidation = std::max(e.consolidation, std::abs(u - consolidation(t)));
+    const auto& all = field(frame, "pore_pressure");
+    for (std::size_t i = 0; i < frame.points(); ++i) {
+      const double z = 1 - frame.position[3 * i + 1] / kHeight;
+      if (frame.phase[i] == 1)
+        e.pressure = std::max(e.pressure, std::abs(all[i] / kLoad - pressure(t, std::max(z, 0.0))));
     }
-  const double expected = consolidation * kLoad * kHeight / constrained_modulus();
-  EXPECT_NEAR(top / (height / kHeight), expected, 0.01 * expected);
+  }
+  if (curves) page.curve(base), page.curve(degree);
+  return e;
+}
+
+Errors terzaghi_page(double permeability, int cells, double held_to) {
+  char size[64];
+  std::snprintf(size, sizeof size, "k = %g m/s, %d cells", permeability, cells);
+  Page page("terzaghi", size);
+  const Errors e = run_column(page, permeability, cells, true);
+  page.error("pressure at all points", e.pressure, held_to, "of the load");
+  page.error("degree of consolidation", e.consolidation, held_to, "–");
+  return e;
+}
+
+/// Orders of convergence over three sizes, from the ends. Asked for are 1.5; measured are 1.18 (pressure,
+/// first order at the drained surface) and 1.53.
+constexpr double kPressureOrder = 1.1, kConsolidationOrder = 1.5;
+TEST(Terzaghi, ConvergesWithTheCells) {
+  const Errors coarse = terzaghi_page(1e-4, 10, 0.02), middle = terzaghi_page(1e-4, 20, 0.01),
+               fine = terzaghi_page(1e-4, 40, 0.005);
+  std::printf("orders: pressure %.2f %.2f, U %.2f %.2f\n", std::log2(coarse.pressure / middle.pressure),
+              std::log2(middle.pressure / fine.pressure),
+              std::log2(coarse.consolidation / middle.consolidation),
+              std::log2(middle.consolidation / fine.consolidation));
+  EXPECT_GE(0.5 * std::log2(coarse.pressure / fine.pressure), 1.5);
+  EXPECT_GE(0.5 * std::log2(coarse.consolidation / fine.consolidation), 1.5);
+}
+
+/// The load's wave needs T = 0.017 to cross the column: what is left of it bounds the error here.
+TEST(Terzaghi, FollowsTheSeriesWhereInertiaMatters) { terzaghi_page(1e-3, 20, 0.01); }
+
+TEST(SlowTerzaghi, FollowsTheSeriesAtLowPermeability) {
+  for (const double k : {1e-5, 1e-6}) terzaghi_page(k, 20, 0.01);
+}
+
+TEST(SlowTerzaghi, FineCells) {
+  for (const double k : {1e-3, 1e-4, 1e-5}) terzaghi_page(k, 80, 0.003);
 }
 
 }  // namespace
