@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace quicksand {
 namespace {
@@ -59,6 +60,16 @@ double surface_step_limit(const SaturatedSoil& soil, double h) {
   return (drag + std::sqrt(drag * drag + 16 * wave)) / (4 * wave);
 }
 
+double fast_wave_step_limit(const SaturatedSoil& soil, double h) {
+  // Larger root c² of det(K − c² M) = 0 with M = diag(Ms, Mw), Q = Kw/n and
+  // K = [[Ec + Q (1−n)², Q n (1−n)], [Q n (1−n), Q n²]].
+  const double n = soil.porosity, phi = 1 - n, q = 1 / (n * soil.water_compliance);
+  const double ms = phi * soil.grain_density, mw = n * soil.water_density;
+  const double a = (soil.constrained_modulus + q * phi * phi) / ms, b = q * n * n / mw;
+  const double coupling = q * n * phi / std::sqrt(ms * mw);
+  return h / std::sqrt(0.5 * (a + b) + std::hypot(0.5 * (a - b), coupling));
+}
+
 StepLimit::StepLimit(const SoilMaterial& soil, double water_density, double water_compliance, double h) {
   for (int i = 0; i < kEntries; ++i) {
     const double n = (i + 0.5) / kEntries;
@@ -66,6 +77,8 @@ StepLimit::StepLimit(const SoilMaterial& soil, double water_density, double wate
                           soil.drag.resistance(n)};
     dry_[i] = dry_step_limit(s, h);
     saturated_[i] = std::min(coupled_step_limit(s, h), surface_step_limit(s, h));
+    fast_wave_[i] =
+        water_compliance > 0 ? fast_wave_step_limit(s, h) : std::numeric_limits<double>::infinity();
   }
 }
 

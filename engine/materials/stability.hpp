@@ -28,6 +28,11 @@ double coupled_step_limit(const SaturatedSoil& soil, double h);
 /// and some grain is always next to free water.
 double surface_step_limit(const SaturatedSoil& soil, double h);
 
+/// Largest stable step (s) along one axis with the pressure explicit and the drag implicit: h/c of the fast
+/// wave without drag, which is at least as fast as the undrained one. Requires compressible water. A lattice
+/// of D dimensions passes waves with √D times the wave number, so that its bound is smaller by √D.
+double fast_wave_step_limit(const SaturatedSoil& soil, double h);
+
 /// The bounds tabulated over porosity, for one soil; cheap enough to ask for every point.
 class StepLimit {
  public:
@@ -36,11 +41,13 @@ class StepLimit {
   double dry(double porosity) const { return look_up(dry_, porosity); }
   /// The smaller of coupled_step_limit and surface_step_limit.
   double saturated(double porosity) const { return look_up(saturated_, porosity); }
+  /// fast_wave_step_limit; infinite in incompressible water.
+  double fast_wave(double porosity) const { return look_up(fast_wave_, porosity); }
 
  private:
   static constexpr int kEntries = 50;
   static double look_up(const std::array<double, kEntries>& table, double porosity);
-  std::array<double, kEntries> dry_{}, saturated_{};
+  std::array<double, kEntries> dry_{}, saturated_{}, fast_wave_{};
 };
 
 }  // namespace quicksand

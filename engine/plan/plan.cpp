@@ -54,6 +54,20 @@ double initial_soil_limit(const Scene& scene, double h) {
   return limit;
 }
 
+/// StepLimit::fast_wave of the saturated soil; infinite without, or if the pressure is solved for.
+double initial_fast_wave_limit(const Scene& scene, double h) {
+  double limit = std::numeric_limits<double>::infinity();
+  if (scene.numerics.pressure == PressureScheme::implicit) return limit;
+  for (const Body& body : scene.bodies) {
+    if (body.kind != BodyKind::saturated_soil || body.fixed) continue;
+    const Soil& soil = scene.soils.at(body.soil);
+    const StepLimit limits(SoilMaterial::from(soil, scene.water), scene.water.density,
+                           1 / scene.water.bulk_modulus.value(), h);
+    limit = std::min(limit, limits.fast_wave(soil.porosity));
+  }
+  return limit;
+}
+
 template <int D>
 void measure(const Scene& scene, Plan& plan) {
   const Grid<D> grid = make_grid<D>(scene);
@@ -76,7 +90,10 @@ void explain(const Scene& scene, Plan& plan) {
   };
   say(plan.has_soil, "Grains: momentum balance, effective stress and porosity of the moving soil bodies.",
       "No soil moves: no grain velocities and no stress.");
-  say(plan.has_water, "Water: momentum balance and one pressure per wet cell, solved implicitly.",
+  const bool solved = scene.numerics.pressure == PressureScheme::implicit;
+  say(plan.has_water,
+      solved ? "Water: momentum balance and one pressure per wet cell, solved implicitly."
+             : "Water: momentum balance and one pressure per wet cell, advanced explicitly.",
       "No water: no water points, no pressure, no drag.");
   say(plan.has_viscosity, "Viscosity of the water: on its velocities, explicitly.", "No viscosity.");
   if (plan.fixed_soil_points)
@@ -102,7 +119,9 @@ Plan make_plan(const Scene& scene) {
   double speed = 0;
   for (const Body& body : scene.bodies)
     speed = std::max(speed, std::hypot(body.velocity[0], body.velocity[1], body.velocity[2]));
-  const StepSituation start{initial_soil_limit(scene, plan.cell_size), speed, plan.has_water};
+  const StepSituation start{initial_soil_limit(scene, plan.cell_size), speed, plan.has_water,
+                            plan.has_water ? initial_fast_wave_limit(scene, plan.cell_size)
+                                           : std::numeric_limits<double>::infinity()};
   plan.bounds = step_bounds(scene, start);
   plan.bound = choose_step(scene, start);
   plan.time_step = plan.bound.seconds;

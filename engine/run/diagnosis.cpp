@@ -88,15 +88,16 @@ Failure pressure_not_found(const Scene& scene, const State<D>& s, double residua
 }
 
 template <int D>
-Failure unstable_step(const Scene& scene, const State<D>& s, double bound) {
+Failure unstable_step(const Scene& scene, const State<D>& s, const StepBound& wave) {
   return describe(scene, s,
                   "A step of " + number(*scene.numerics.time_step) +
-                      " s is above the stability bound of the soil wave, " + number(bound) + " s,",
+                      " s is above the stability bound of the " + wave.name + ", " + number(wave.seconds) +
+                      " s,",
                   step_remedy(scene));
 }
 
-template Failure unstable_step<2>(const Scene&, const State<2>&, double);
-template Failure unstable_step<3>(const Scene&, const State<3>&, double);
+template Failure unstable_step<2>(const Scene&, const State<2>&, const StepBound&);
+template Failure unstable_step<3>(const Scene&, const State<3>&, const StepBound&);
 
 Failure too_many_steps(const Scene& scene, double time) {
   return {"max_steps",

@@ -14,7 +14,7 @@ template <int D>
 Failure pressure_not_found(const Scene& scene, const State<D>& state, double residual);
 /// Only a fixed numerics.time_step can be above the stability bound.
 template <int D>
-Failure unstable_step(const Scene& scene, const State<D>& state, double bound);
+Failure unstable_step(const Scene& scene, const State<D>& state, const StepBound& wave);
 Failure too_many_steps(const Scene& scene, double time);
 
 }  // namespace quicksand

@@ -35,7 +35,7 @@ class Run {
         ledger_(scene, state_),
         watch_(scene) {
     for (const Stage& stage : scene.stages) end_time_ += stage.duration;
-    last_.soil_limit = first_soil_limit();
+    set_first_limits();
     measure_motion(state_, last_);
   }
 
@@ -80,11 +80,13 @@ class Run {
   }
 
   bool step(double stage_end) {
-    const StepBound chosen =
-        choose_step(scene_, {last_.soil_limit, last_.max_speed, state_.water.size() > 0});
+    const StepSituation now{last_.soil_limit, last_.max_speed, state_.water.size() > 0,
+                            last_.fast_wave_limit};
+    const StepBound chosen = choose_step(scene_, now);
     if (chosen.seconds < kCollapse * first_step(chosen.seconds))
       return fail(collapsed_step(scene_, state_, chosen));
-    if (chosen.seconds > last_.soil_limit) return fail(unstable_step(scene_, state_, last_.soil_limit));
+    if (const auto wave = outrun_wave(scene_, now, chosen.seconds))
+      return fail(unstable_step(scene_, state_, *wave));
     last_ = advance(state_, until_event(chosen.seconds, stage_end));
     ++report_.steps;
     report_.time_step_min = report_.steps == 1 ? last_.dt : std::min(report_.time_step_min, last_.dt);
@@ -165,15 +167,18 @@ class Run {
       report_.phases.push_back({kPhaseNames[i], state_.phase_seconds[i]});
   }
 
-  double first_soil_limit() const {
-    double limit = std::numeric_limits<double>::infinity();
+  void set_first_limits() {
+    double limit = std::numeric_limits<double>::infinity(), fast_wave = limit;
     for (std::size_t p = 0; p < state_.soil.size(); ++p) {
       const StepLimit& l = state_.constants.step_limits[state_.soil.soil[p]];
       const bool confined = state_.cell[state_.grid.index(state_.grid.cell_of(state_.soil.x[p]))].confined;
       limit =
           std::min(limit, confined ? l.saturated(state_.soil.porosity[p]) : l.dry(state_.soil.porosity[p]));
+      if (state_.constants.explicit_pressure)
+        fast_wave = std::min(fast_wave, l.fast_wave(state_.soil.porosity[p]));
     }
-    return limit;
+    last_.soil_limit = limit;
+    last_.fast_wave_limit = fast_wave;
   }
   double first_step(double dt) {
     if (first_step_ == 0) first_step_ = std::min(dt, scene_.output.frame_interval);

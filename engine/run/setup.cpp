@@ -21,6 +21,7 @@ Constants<D> make_constants(const Scene& scene, const Grid<D>& grid) {
   c.pic_rate = scene.numerics.pic_rate;
   c.pressure_tolerance = scene.numerics.pressure_tolerance;
   c.drift_time = scene.numerics.drift_time;
+  c.explicit_pressure = scene.numerics.pressure == PressureScheme::explicit_scheme;
   for (const auto& [name, soil] : scene.soils) {
     c.soils.push_back(SoilMaterial::from(soil, scene.water));
     c.step_limits.emplace_back(c.soils.back(), c.water_density, c.water_compliance, grid.h);

@@ -74,8 +74,6 @@ void check_supported(const Scene& scene, Faults& faults) {
   refuse(!scene.output.sections.empty(), "/output/sections", "a section");
   refuse(scene.numerics.kernel == Kernel::linear, "/numerics/kernel", "kernel linear");
   refuse(scene.numerics.transfer == Transfer::apic, "/numerics/transfer", "transfer apic");
-  refuse(scene.numerics.pressure == PressureScheme::explicit_scheme, "/numerics/pressure",
-         "pressure explicit");
 }
 
 std::vector<Fault> check(const Scene& scene) {

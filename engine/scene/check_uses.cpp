@@ -74,6 +74,11 @@ void check_materials(const Scene& scene, Faults& faults) {
   const bool moving_soil = std::any_of(scene.bodies.begin(), scene.bodies.end(), [](const Body& body) {
     return body.kind != BodyKind::water && !body.fixed;
   });
+  if (scene.numerics.pressure == PressureScheme::explicit_scheme && !scene.water.bulk_modulus)
+    faults.push_back(
+        {"/numerics/pressure",
+         "explicit has no stable step in incompressible water: give materials.water.bulk_modulus a "
+         "value or use implicit"});
   const bool tilted = scene.gravity[0] != 0 || scene.gravity[2] != 0;
   if (tilted && moving_soil && scene.initial.stress == InitialStress::k0 &&
       scene.domain.dimension != Dimension::space)

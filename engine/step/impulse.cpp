@@ -23,7 +23,7 @@ double soil_reaction(const State<D>& s, int d, int face, double dt) {
     const double drag = f.exchange * s.grid.cell_volume();
     return mirrored + sums.soil_mass * (change - dt * s.constants.gravity[d]) - drag;
   }
-  const double pressure = feels_pressure(s, d, face) ? -sums.grains * pressure_gradient(s, d, face) : 0;
+  const double pressure = feels_pressure(s, d, face) ? -sums.grains * felt_gradient(s, d, face) : 0;
   return mirrored + dt * (sums.soil_force + pressure);
 }
 
@@ -34,7 +34,7 @@ double water_reaction(const State<D>& s, int d, int face, double dt) {
   if (s.water_walls.closed(d, face)) return -dt * sums.water_mass * s.constants.gravity[d];
   const double mirrored = -s.image[d][face].water * (f.water - f.water_old);
   if (f.wet > 1) return mirrored;  // carried along by the surface
-  const double rho = s.constants.water_density, pressure = f.wet ? pressure_gradient(s, d, face) : 0;
+  const double rho = s.constants.water_density, pressure = f.wet ? felt_gradient(s, d, face) : 0;
   return mirrored + dt * sums.water_mass * (f.viscous - (pressure + f.fixed_drag * f.water / f.n) / rho);
 }
 

@@ -57,9 +57,20 @@ inline double fill_of(double water, double grains, double soil_bulk) {
 }
 
 /// Pressure gradient across face `face` of component d as the velocities feel it, Pa/m: between two wet
-/// cells, or from a wet cell to p = 0 at the water surface; at a closed face the weight of still water.
+/// cells (pressures `inner`), or from a wet cell to p = 0 at the water surface; at a closed face the weight
+/// of still water.
 template <int D>
-double pressure_gradient(const State<D>& s, int d, int face);
+double pressure_gradient(const State<D>& s, const std::vector<double>& inner, int d, int face);
+template <int D>
+double pressure_gradient(const State<D>& s, int d, int face) {
+  return pressure_gradient(s, s.pressure, d, face);
+}
+/// The same as this step's velocities feel it: with the pressure explicit, that at the step's start where two
+/// cells push on a face; at the surface always that at its end.
+template <int D>
+double felt_gradient(const State<D>& s, int d, int face) {
+  return pressure_gradient(s, s.constants.explicit_pressure ? s.pressure_old : s.pressure, d, face);
+}
 
 /// Acceleration of the water by its viscosity at a face that carries water, m/s².
 template <int D>

@@ -186,6 +186,22 @@ PressureReport conjugate_gradients(PressureSystem<D>& m, double tolerance) {
   return report;
 }
 
+/// One step of the explicit scheme. A row's sum is the part of its diagonal that belongs to the cell alone:
+/// storage and the water surface.
+template <int D>
+void advance_explicitly(PressureSystem<D>& m) {
+  std::vector<double> image(m.cell.size());
+  multiply(m, m.solution, image);
+  for (std::size_t r = 0; r < m.cell.size(); ++r) {
+    double own = m.diagonal[r];
+    for (int d = 0; d < D; ++d) {
+      if (m.upper[d][r] >= 0) own += m.coupling[d][r];
+      if (const int j = m.lower[d][r]; j >= 0) own += m.coupling[d][j];
+    }
+    m.solution[r] += (m.rhs[r] - image[r]) / own;
+  }
+}
+
 }  // namespace
 
 template <int D>
@@ -194,7 +210,11 @@ PressureReport solve_pressure(State<D>& s, double dt) {
   number_rows(s, system);
   if (system.cell.empty()) return {};
   assemble(s, system, dt);
-  const PressureReport report = conjugate_gradients(system, s.constants.pressure_tolerance);
+  PressureReport report{static_cast<int>(system.cell.size())};
+  if (s.constants.explicit_pressure)
+    advance_explicitly(system);
+  else
+    report = conjugate_gradients(system, s.constants.pressure_tolerance);
   for (std::size_t r = 0; r < system.cell.size(); ++r) s.pressure[system.cell[r]] = system.solution[r];
   return report;
 }

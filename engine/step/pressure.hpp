@@ -17,6 +17,11 @@ struct PressureReport {
 /// Solved by conjugate gradients from the last pressure, preconditioned by modified incomplete Cholesky,
 /// until the largest residual is below `tolerance` × the largest right-hand side — what one step of
 /// unbalanced weight would compress. Serial: same bits for any number of threads.
+///
+/// With the pressure explicit, [FMS19]'s scheme, the same balance with pⁿ in q:
+///      p = pⁿ − Δt Kw/n (∇·q − drift),   q = q̂ − β ∇pⁿ.
+/// At the water surface, which may lie as near to a cell's centre as `kMinSurfaceDistance`, the flux answers
+/// to p itself: cut cells then do not bound the step, and the row stays one division.
 template <int D>
 PressureReport solve_pressure(State<D>& s, double dt);
 

@@ -93,7 +93,8 @@ struct Constants {
   double viscosity = 0;         ///< Pa·s
   double pic_rate = 0;          ///< 1/s
   double pressure_tolerance = 1e-6;
-  double drift_time = 0;  ///< s; 0: no feedback
+  double drift_time = 0;           ///< s; 0: no feedback
+  bool explicit_pressure = false;  ///< pressure advanced from the last one instead of solved for
   std::vector<SoilMaterial> soils;
   std::vector<StepLimit> step_limits;  ///< per soil
 };

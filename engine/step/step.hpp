@@ -1,4 +1,6 @@
 #pragma once
+#include <limits>
+
 #include "engine/step/pressure.hpp"
 #include "engine/step/state.hpp"
 
@@ -15,7 +17,9 @@ struct StepReport {
   Vec<D> impulse_walls{}, impulse_surface{}, impulse_loads{};  ///< N·s in this step
   double kinetic = 0, strain = 0;                              ///< J
   double soil_limit = 0;  ///< s, smallest stable step of any soil point; infinite without
-  double dt = 0;          ///< s, of the step that was taken
+  /// s, smallest StepLimit::fast_wave of any soil point; infinite unless the pressure is explicit
+  double fast_wave_limit = std::numeric_limits<double>::infinity();
+  double dt = 0;  ///< s, of the step that was taken
   bool finite = true;
 };
 

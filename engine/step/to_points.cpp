@@ -19,7 +19,8 @@ struct Totals {
   Vec<D> momentum{};
   Vec<D> let_go{};  ///< N·s, what the surface did not give to drops that fall freely
   double mass = 0, kinetic = 0, strain = 0, max_speed2 = 0, max_soil_speed2 = 0;
-  double soil_limit = std::numeric_limits<double>::infinity();  ///< s
+  double soil_limit = std::numeric_limits<double>::infinity();       ///< s
+  double fast_wave_limit = std::numeric_limits<double>::infinity();  ///< s
   Interventions interventions;
   bool finite = true;
   Totals& operator+=(const Totals& o) {
@@ -30,6 +31,7 @@ struct Totals {
     max_speed2 = std::max(max_speed2, o.max_speed2);
     max_soil_speed2 = std::max(max_soil_speed2, o.max_soil_speed2);
     soil_limit = std::min(soil_limit, o.soil_limit);
+    fast_wave_limit = std::min(fast_wave_limit, o.fast_wave_limit);
     interventions += o.interventions;
     finite = finite && o.finite;
     return *this;
@@ -167,6 +169,8 @@ void soil_from_faces(State<D>& s, std::uint32_t p, double dt, double pic, Totals
   const StepLimit& limit = s.constants.step_limits[soil.soil[p]];
   const bool confined = s.cell[kernel.home].confined;
   totals.soil_limit = std::min(totals.soil_limit, confined ? limit.saturated(touching) : limit.dry(touching));
+  if (s.constants.explicit_pressure)
+    totals.fast_wave_limit = std::min(totals.fast_wave_limit, limit.fast_wave(touching));
   const double strain = strain_energy(s, p);
   totals.strain += strain;
   totals.mass += soil.mass[p];
@@ -216,6 +220,7 @@ void faces_to_points(State<D>& s, double dt, StepReport<D>& report) {
   report.max_speed = std::sqrt(totals.max_speed2);
   report.max_soil_speed = std::sqrt(totals.max_soil_speed2);
   report.soil_limit = totals.soil_limit;
+  report.fast_wave_limit = totals.fast_wave_limit;
   report.finite = totals.finite;
   s.interventions += totals.interventions;
 }

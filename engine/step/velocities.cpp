@@ -8,13 +8,13 @@
 namespace quicksand {
 
 template <int D>
-double pressure_gradient(const State<D>& s, int d, int face) {
+double pressure_gradient(const State<D>& s, const std::vector<double>& inner, int d, int face) {
   const int low = face - s.grid.stride[d], high = face;
   const CellState &a = s.cell[low], &b = s.cell[high];
   if (s.water_walls.closed(d, face))
     return a.unknown >= 0 || b.unknown >= 0 ? s.constants.water_density * s.constants.gravity[d] : 0;
   const double inverse_h = s.grid.inverse_h;
-  if (a.unknown >= 0 && b.unknown >= 0) return (s.pressure[high] - s.pressure[low]) * inverse_h;
+  if (a.unknown >= 0 && b.unknown >= 0) return (inner[high] - inner[low]) * inverse_h;
   if (a.unknown >= 0) return -s.pressure[low] * inverse_h / surface_distance(a.depth, b.depth);
   if (b.unknown >= 0) return s.pressure[high] * inverse_h / surface_distance(b.depth, a.depth);
   return 0;
@@ -198,7 +198,7 @@ void correct_velocities(State<D>& s, double dt) {
     s.blocks.cells(s.grid, b, true, [&](int face, const Cell<D>&) {
       for (int d = 0; d < D; ++d) {
         FaceFlow& f = s.flow[d][face];
-        const double g = feels_pressure(s, d, face) ? pressure_gradient(s, d, face) : 0;
+        const double g = feels_pressure(s, d, face) ? felt_gradient(s, d, face) : 0;
         if (f.wet) f.water -= f.water_response * g;
         f.soil -= f.soil_response * g;
         f.exchange = dt * f.drag * (f.water - f.soil);
@@ -223,8 +223,8 @@ void correct_velocities(State<D>& s, double dt) {
     });
 }
 
-template double pressure_gradient<2>(const State<2>&, int, int);
-template double pressure_gradient<3>(const State<3>&, int, int);
+template double pressure_gradient<2>(const State<2>&, const std::vector<double>&, int, int);
+template double pressure_gradient<3>(const State<3>&, const std::vector<double>&, int, int);
 template void predict_velocities<2>(State<2>&, double);
 template void predict_velocities<3>(State<3>&, double);
 template void correct_velocities<2>(State<2>&, double);

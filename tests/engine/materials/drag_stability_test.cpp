@@ -81,6 +81,23 @@ TEST(Stability, StifferOrLooserSoilNeedsSmallerSteps) {
   EXPECT_LT(surface_step_limit(soil, kCell), surface_step_limit(reference(1e-4), kCell));
 }
 
+/// h/c of the characteristic polynomial c⁴ Ms Mw − c² (…) + det K, written out.
+TEST(Stability, FastWaveSolvesItsCharacteristicPolynomial) {
+  for (const double n : {0.05, 0.4, 0.9}) {
+    SaturatedSoil soil = reference(1e-4);
+    soil.porosity = n;
+    soil.water_compliance = 1 / 2e7;
+    const double c = kCell / fast_wave_step_limit(soil, kCell), q = 2e7 / n, phi = 1 - n;
+    const double ms = phi * 2650, mw = n * 1000, k11 = kConstrained + q * phi * phi, k22 = q * n * n;
+    const double k12 = q * n * phi;
+    const double determinant = (k11 - c * c * ms) * (k22 - c * c * mw) - k12 * k12;
+    EXPECT_LT(std::abs(determinant), 1e-9 * k11 * k22);
+    EXPECT_GT(c * c, k11 / ms);  // the larger root: above either phase alone
+    EXPECT_GT(c * c, k22 / mw);
+    EXPECT_GE(c, std::sqrt((kConstrained + q) / (ms + mw)));  // and no slower than the undrained wave
+  }
+}
+
 TEST(StepLimit, TableAgreesWithTheAnalysis) {
   const Soil s = test::sand();
   const SoilMaterial material = SoilMaterial::from(s, {});
@@ -91,6 +108,7 @@ TEST(StepLimit, TableAgreesWithTheAnalysis) {
     const double saturated = std::min(coupled_step_limit(soil, kCell), surface_step_limit(soil, kCell));
     EXPECT_NEAR(limit.dry(n) / dry_step_limit(soil, kCell), 1, 1e-3) << n;
     EXPECT_NEAR(limit.saturated(n) / saturated, 1, 0.02) << n;
+    EXPECT_NEAR(limit.fast_wave(n) / fast_wave_step_limit(soil, kCell), 1, 1e-3) << n;
   }
   for (const double n : {0.0, 0.02, 0.999, 1.0}) {  // any porosity that a point may have
     EXPECT_GT(limit.dry(n), 0);

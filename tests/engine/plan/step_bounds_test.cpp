@@ -52,6 +52,34 @@ TEST(StepBounds, ViscosityKnowsTheDimension) {
   EXPECT_NEAR(seconds(step_bounds(s, {kNone, 0}), "viscosity"), 0.01 / (6 * 2e-3), 1e-15);
 }
 
+TEST(StepBounds, ExplicitPressureIsBoundByTheFastestWave) {
+  Scene s = test::plane(1, 1, 0.1);
+  s.gravity = {};
+  s.water.viscosity = 0;
+  s.water.bulk_modulus = 1.6e7;  // Pa: sound at 126 m/s
+  s.numerics.pressure = PressureScheme::explicit_scheme;
+  const double along_axis = 0.1 / std::sqrt(1.6e4);
+  const auto bounds = step_bounds(s, {3e-3, 0});
+  EXPECT_EQ(names(bounds), (std::vector<std::string>{"soil wave", "water wave"}));
+  EXPECT_NEAR(seconds(bounds, "water wave"), along_axis / 2, 1e-15);  // √(2D)
+  EXPECT_EQ(seconds(step_bounds(s, {3e-3, 0, true, 2e-4}), "water wave"), 1e-4);
+  EXPECT_TRUE(step_bounds(s, {kNone, 0, false}).empty());  // no water
+  Scene cube = test::space({1, 1, 1}, 0.1);
+  cube.water = s.water, cube.numerics = s.numerics;
+  EXPECT_NEAR(seconds(step_bounds(cube, {kNone, 0}), "water wave"), along_axis / std::sqrt(6.0), 1e-15);
+}
+
+TEST(StepBounds, TellsWhichWaveAStepOutruns) {
+  Scene s = test::plane(1, 1, 0.1);
+  s.numerics.pressure = PressureScheme::explicit_scheme;
+  const StepSituation now{1e-3, 100, true, 2e-5};
+  EXPECT_FALSE(outrun_wave(s, now, 0.99e-5));
+  EXPECT_EQ(outrun_wave(s, now, 1.01e-5)->name, "water wave");
+  EXPECT_EQ(outrun_wave(s, now, 1.01e-3)->name, "soil wave");
+  s.numerics.pressure = PressureScheme::implicit;
+  EXPECT_FALSE(outrun_wave(s, now, 0.99e-3));
+}
+
 TEST(StepBounds, DrySoilKnowsNoWaves) {
   const Scene s = test::plane(1, 1, 0.1);
   EXPECT_EQ(names(step_bounds(s, {3e-4, 2, false})), (std::vector<std::string>{"soil wave", "motion"}));
