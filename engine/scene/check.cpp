@@ -24,8 +24,10 @@ std::string text(double value) {
   return std::string(buffer, end.ptr);
 }
 
-std::string text(const Vec3& point) {
-  return std::string("(") + text(point[0]) + ", " + text(point[1]) + ")";
+std::string text(const Scene& scene, const Vec3& point) {
+  std::string words = "(" + text(point[0]) + ", " + text(point[1]);
+  if (axes(scene) == 3) words += ", " + text(point[2]);
+  return words + ")";
 }
 
 std::string cell_words(const Scene& scene) {
@@ -83,7 +85,7 @@ std::vector<Fault> check(const Scene& scene) {
   check_materials(scene, faults);
   check_stages(scene, faults);
   check_output(scene, faults);
-  if (check_grid(scene, faults) && scene.domain.dimension != Dimension::space) {
+  if (check_grid(scene, faults)) {
     check_lines(scene, faults);
     check_bodies(scene, faults);
   }

@@ -76,10 +76,9 @@ void check_loads(const Scene& scene, Faults& faults) {
                         "\"" + load.body + "\" cannot carry a load: name a body of soil that is not fixed"});
     if (load.kind == Load::Kind::traction && load.traction == Vec3{0, 0, 0})
       faults.push_back({at_index("loads", k, "/traction"), "zero: the load has no effect"});
-    const bool acts = std::any_of(scene.stages.begin(), scene.stages.end(), [&](const Stage& stage) {
-      return !stage.loads || std::count(stage.loads->begin(), stage.loads->end(), load.name) > 0;
-    });
-    if (!acts)
+    bool ever = false;
+    for (std::size_t stage = 0; stage < scene.stages.size(); ++stage) ever = ever || acts(scene, stage, load);
+    if (!ever)
       faults.push_back({at_index("loads", k), "acts in no stage: remove it, or name it in a stage's loads"});
   }
 }
@@ -130,12 +129,24 @@ void check_heave(const Scene& scene, const HeaveWatch& watch, Faults& faults) {
   for (std::size_t axis = 0; axis < 3; ++axis)
     drop += scene.gravity[axis] * (below->at[axis] - above->at[axis]);
   if (!(drop > 0))
-    faults.push_back({"/output/heave/below", "the probe \"" + watch.below + "\" at " + text(below->at) +
-                                                 " is not below \"" + watch.above + "\" at " +
-                                                 text(above->at) + ": no gradient between them"});
+    faults.push_back({"/output/heave/below",
+                      "the probe \"" + watch.below + "\" at " + text(scene, below->at) + " is not below \"" +
+                          watch.above + "\" at " + text(scene, above->at) + ": no gradient between them"});
 }
 
 }  // namespace
+
+bool present(const Scene& scene, std::size_t stage, const std::string& body) {
+  return std::none_of(
+      scene.stages.begin(), scene.stages.begin() + static_cast<std::ptrdiff_t>(stage) + 1,
+      [&](const Stage& s) { return std::count(s.remove_bodies.begin(), s.remove_bodies.end(), body) > 0; });
+}
+
+bool acts(const Scene& scene, std::size_t stage, const Load& load) {
+  const auto& loads = scene.stages[stage].loads;
+  return present(scene, stage, load.body) &&
+         (!loads || std::count(loads->begin(), loads->end(), load.name) > 0);
+}
 
 void check_stages(const Scene& scene, Faults& faults) {
   if (scene.stages.empty()) faults.push_back({"/stages", "there is no stage: give at least one"});

@@ -185,6 +185,15 @@ Stretches stretches(const Region& region, int line_axis, double at) {
   return {};
 }
 
+Region at_depth(Region region, double z) {
+  if (region.kind == Region::Kind::box && (z < region.min[2] || z >= region.max[2])) {
+    region.kind = Region::Kind::union_of;
+    region.parts.clear();
+  }
+  for (Region& part : region.parts) part = at_depth(std::move(part), z);
+  return region;
+}
+
 double area(const Region& region, double spacing) {
   const Bounds bounds = bounding_box(region);
   if (bounds.empty) return 0;

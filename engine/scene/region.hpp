@@ -26,6 +26,9 @@ using Stretches = std::vector<std::array<double, 2>>;
 /// the line x = `at`, stretches in y. For axis 0, x lies in a stretch exactly when contains(region, {x, at}).
 Stretches stretches(const Region& region, int axis, double at);
 
+/// The region as it is cut by the plane at depth z: boxes that do not reach there hold nothing.
+Region at_depth(Region region, double z);
+
 /// Area of a region of the plane in m², by lines `spacing` metres apart (relative error of order
 /// spacing/size).
 double area(const Region& region, double spacing);

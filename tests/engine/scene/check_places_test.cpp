@@ -1,0 +1,103 @@
+// Reservoirs, plates and probes: where they may be.
+
+#include "tests/engine/scene/basin.hpp"
+
+namespace quicksand {
+namespace {
+
+using namespace test;
+
+Pointers with_reservoir(const Segment& line, const std::function<void(Scene&)>& more = {}) {
+  return after([&](Scene& s) {
+    s.walls.resize(1);
+    s.walls[0].block = box(0.6, 0.6, 0.8, 1);
+    s.reservoirs = {{"lake", line, 0.8}};
+    if (more) more(s);
+  });
+}
+
+TEST(CheckReservoir, LiesOnTheEdgeOrOnABlock) {
+  EXPECT_EQ(with_reservoir({{0, 0.3, 0}, {0, 0.6, 0}}), Pointers{});
+  EXPECT_EQ(with_reservoir({{0.6, 0.7, 0}, {0.6, 0.9, 0}}), Pointers{});
+  EXPECT_EQ(with_reservoir({{0.6, 0.6, 0}, {0.8, 0.6, 0}}), Pointers{});
+  EXPECT_EQ(with_reservoir({{0.5, 0.7, 0}, {0.5, 0.9, 0}}), Pointers{"/reservoirs/0/line"});  // in the open
+  EXPECT_EQ(with_reservoir({{0.7, 0.7, 0}, {0.7, 0.9, 0}}), Pointers{"/reservoirs/0/line"});  // in the block
+  EXPECT_EQ(with_reservoir({{0.6, 0.5, 0}, {0.6, 0.9, 0}}), Pointers{"/reservoirs/0/line"});  // past its end
+  EXPECT_EQ(with_reservoir({{0.5, 1, 0}, {0.7, 1, 0}}), Pointers{"/reservoirs/0/line"});      // half covered
+}
+
+TEST(CheckReservoir, HasOneLevelInEachPlaceAndNeedsWeight) {
+  EXPECT_EQ(with_reservoir({{0, 0.3, 0}, {0, 0.6, 0}},
+                           [](Scene& s) {
+                             s.reservoirs.push_back({"sea", {{0, 0.5, 0}, {0, 0.8, 0}}, 0.7});
+                           }),
+            Pointers{"/reservoirs/1/line"});
+  EXPECT_EQ(with_reservoir({{0, 0.3, 0}, {0, 0.6, 0}},
+                           [](Scene& s) {
+                             s.gravity = {0, 0, 0};
+                           }),
+            Pointers{"/reservoirs/0/head"});
+}
+
+Load plate_on_sand(double x0, double x1, double y = 0.3) {
+  Load load;
+  load.kind = Load::Kind::plate;
+  load.name = "plate";
+  load.body = "sand";
+  load.plate = {{x0, y, 0}, {x1, y, 0}};
+  load.plate_velocity = {0, -0.01, 0};
+  return load;
+}
+
+Pointers with_plates(const std::vector<Load>& loads) {
+  return after([&](Scene& s) { s.loads = loads; });
+}
+
+TEST(CheckPlate, LiesOnTopOfItsBody) {
+  EXPECT_EQ(with_plates({plate_on_sand(0.2, 0.6)}), Pointers{});
+  EXPECT_EQ(with_plates({plate_on_sand(0.2, 0.6, 0.2)}), Pointers{"/loads/0/plate"});  // within it
+  EXPECT_EQ(with_plates({plate_on_sand(0.2, 0.6, 0.4)}), Pointers{"/loads/0/plate"});  // above it
+  Load upright = plate_on_sand(0.2, 0.2);
+  upright.plate.to[1] = 0.5;
+  EXPECT_EQ(with_plates({upright}), Pointers{"/loads/0/plate"});
+  EXPECT_EQ(after([](Scene& s) {
+              s.bodies[0].region.max[0] = 0.5;
+              s.loads = {plate_on_sand(0.2, 0.6)};
+            }),
+            Pointers{"/loads/0/plate"});  // past its end
+}
+
+TEST(CheckPlate, TwoMayShareAPlaceButNotAtATime) {
+  Load second = plate_on_sand(0.4, 0.8);
+  second.name = "second";
+  EXPECT_EQ(with_plates({plate_on_sand(0.2, 0.6), second}), Pointers{"/loads/1/plate"});
+  EXPECT_EQ(after([&](Scene& s) {
+              s.loads = {plate_on_sand(0.2, 0.6), second};
+              s.stages.push_back(s.stages[0]);
+              s.stages[1].name = "then";
+              s.stages[0].loads = std::vector<std::string>{"plate"};
+              s.stages[1].loads = std::vector<std::string>{"second"};
+            }),
+            Pointers{});
+}
+
+TEST(CheckProbe, IsWhereSomethingCanBeSeen) {
+  const auto probe = [](const Vec3& at, const char* quantity) {
+    return after([&](Scene& s) {
+      s.walls.resize(1);
+      s.walls[0].block = box(0.6, 0.6, 0.8, 1);
+      s.bodies[0].region.min[1] = 0.1;
+      s.bodies.push_back({"filter", BodyKind::saturated_soil, "sand", box(0, 0, 1, 0.1), true, {}});
+      s.output.probes = {{"p", at, quantity}};
+    });
+  };
+  EXPECT_EQ(probe({0.7, 0.7, 0}, "head"), Pointers{"/output/probes/0/at"});
+  EXPECT_EQ(probe({0.6, 0.7, 0}, "head"), Pointers{});  // on the block's face
+  EXPECT_EQ(probe({0.8, 0.7, 0}, "head"), Pointers{});
+  EXPECT_EQ(probe({0.7, 0.6, 0}, "head"), Pointers{});
+  EXPECT_EQ(probe({0.5, 0.05, 0}, "head"), Pointers{});
+  EXPECT_EQ(probe({0.5, 0.05, 0}, "soil_velocity"), Pointers{"/output/probes/0/at"});
+}
+
+}  // namespace
+}  // namespace quicksand
