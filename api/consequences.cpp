@@ -39,7 +39,15 @@ constexpr Doubt doubts[] = {
     {"/domain/cell_size", "/numerics", true},
     {"/materials/soils/*/max_porosity", "/materials/soils/*/porosity"},
     {"/materials/soils/*/model", "/materials/soils/*/model/friction_angle"},
+    {"/materials/soils/*/model", "/materials/soils/*/model/cohesion"},
+    {"/materials/soils/*/model/swelling_slope", "/materials/soils/*/model/compression_slope"},
     {"/stages/*/until_rest", "/stages/*/duration"},
+    {"/stages/*/heads_ramp", "/stages/*/duration"},
+    {"/initial/k0", "/materials", true},  // has every soil its own
+    {"/reservoirs", "/walls", true},      // which may be an outside, or in the way
+    {"/output/probes", "/walls", true},
+    {"/loads/*/plate", "/bodies", true},
+    {"/stages/*/loads", "/bodies", true},
     {"/materials", "/bodies", true},  // is it used, is there water
     {"/initial", "/bodies", true},
     {"/numerics", "/bodies", true},

@@ -43,6 +43,15 @@ bool present(const Scene& scene, std::size_t stage, const std::string& body);
 bool acts(const Scene& scene, std::size_t stage, const Load& load);
 
 // Words of faults.
+/// "there is no gate "door": there are "valve" and "sluice""
+std::string there_is_no(const std::string& what, const std::string& name,
+                        const std::vector<std::string>& names);
+template <typename Items>
+std::string there_is_no(const std::string& what, const std::string& name, const Items& items) {
+  std::vector<std::string> names;
+  for (const auto& item : items) names.push_back(item.name);
+  return there_is_no(what, name, names);
+}
 inline std::string at_index(const char* list, std::size_t index, const std::string& rest = {}) {
   return std::string("/") + list + "/" + std::to_string(index) + rest;
 }

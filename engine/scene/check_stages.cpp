@@ -29,10 +29,35 @@ void check_references(const std::vector<std::string>& names, const Items& items,
   for (std::size_t k = 0; k < names.size(); ++k) {
     const std::string place = pointer + "/" + std::to_string(k);
     if (!has_name(items, names[k]))
-      faults.push_back({place, "there is no " + what + " \"" + names[k] + "\""});
+      faults.push_back({place, there_is_no(what, names[k], items)});
     else if (!seen.insert(names[k]).second)
       faults.push_back({place, "\"" + names[k] + "\" is listed twice"});
   }
+}
+
+/// Heads and bodies: what a stage changes for itself and those after it.
+void check_changes(const Scene& scene, std::size_t index, Faults& faults) {
+  const Stage& stage = scene.stages[index];
+  const auto here = [&](const std::string& rest) { return at_index("stages", index, rest); };
+  for (const auto& [name, head] : stage.heads)
+    if (!has_name(scene.reservoirs, name))
+      faults.push_back({here("/heads/" + escaped(name)), there_is_no("reservoir", name, scene.reservoirs)});
+  if (!stage.heads.empty() && stage.heads_ramp > stage.duration)
+    faults.push_back({here("/heads_ramp"), text(stage.heads_ramp) + " s is above the duration " +
+                                               text(stage.duration) + " s: the heads would not be reached"});
+  check_references(stage.remove_bodies, scene.bodies, here("/remove_bodies"), "body", faults);
+  for (std::size_t k = 0; k < stage.remove_bodies.size(); ++k)
+    if (index > 0 && !present(scene, index - 1, stage.remove_bodies[k]))
+      faults.push_back({here("/remove_bodies/" + std::to_string(k)),
+                        "\"" + stage.remove_bodies[k] + "\" was removed by an earlier stage"});
+  for (std::size_t k = 0; stage.loads && k < stage.loads->size(); ++k)
+    if (const auto load = find_named(scene.loads, (*stage.loads)[k]);
+        load != scene.loads.end() && !present(scene, index, load->body))
+      faults.push_back({here("/loads/" + std::to_string(k)), "\"" + load->name + "\" lies on the body \"" +
+                                                                 load->body + "\", which has been removed"});
+  const auto still_there = [&](const Body& body) { return present(scene, index, body.name); };
+  if (!stage.remove_bodies.empty() && std::none_of(scene.bodies.begin(), scene.bodies.end(), still_there))
+    faults.push_back({here("/remove_bodies"), "no body is left: keep one, or end the run before"});
 }
 
 void check_stage(const Scene& scene, std::size_t index, Faults& faults) {
@@ -46,10 +71,7 @@ void check_stage(const Scene& scene, std::size_t index, Faults& faults) {
                                            text(stage.duration) + " s: the stage could not end at rest"});
   check_references(stage.open_gates, scene.gates, here("/open_gates"), "gate", faults);
   if (stage.loads) check_references(*stage.loads, scene.loads, here("/loads"), "load", faults);
-  check_references(stage.remove_bodies, scene.bodies, here("/remove_bodies"), "body", faults);
-  for (const auto& [name, head] : stage.heads)
-    if (!has_name(scene.reservoirs, name))
-      faults.push_back({here("/heads/" + escaped(name)), "there is no reservoir \"" + name + "\""});
+  check_changes(scene, index, faults);
 }
 
 void check_gate_uses(const Scene& scene, Faults& faults) {
@@ -70,7 +92,7 @@ void check_loads(const Scene& scene, Faults& faults) {
     const Load& load = scene.loads[k];
     const auto body = find_named(scene.bodies, load.body);
     if (body == scene.bodies.end())
-      faults.push_back({at_index("loads", k, "/body"), "there is no body \"" + load.body + "\""});
+      faults.push_back({at_index("loads", k, "/body"), there_is_no("body", load.body, scene.bodies)});
     else if (body->kind == BodyKind::water || body->fixed)
       faults.push_back({at_index("loads", k, "/body"),
                         "\"" + load.body + "\" cannot carry a load: name a body of soil that is not fixed"});
@@ -111,15 +133,18 @@ void check_probes(const Scene& scene, Faults& faults) {
 void check_heave(const Scene& scene, const HeaveWatch& watch, Faults& faults) {
   const auto body = find_named(scene.bodies, watch.body);
   if (body == scene.bodies.end())
-    faults.push_back({"/output/heave/body", "there is no body \"" + watch.body + "\""});
+    faults.push_back({"/output/heave/body", there_is_no("body", watch.body, scene.bodies)});
   else if (body->kind == BodyKind::water || body->fixed)
     faults.push_back(
         {"/output/heave/body", "\"" + watch.body + "\" cannot heave: name a body of soil that is not fixed"});
   const auto& probes = scene.output.probes;
+  std::vector<std::string> of_head;
+  for (const Probe& probe : probes)
+    if (probe.quantity == "head") of_head.push_back(probe.name);
   const auto head_probe = [&](const std::string& name, const char* pointer) {
     const auto probe = find_named(probes, name);
     if (probe != probes.end() && probe->quantity == "head") return probe;
-    faults.push_back({pointer, "there is no probe \"" + name + "\" with quantity head"});
+    faults.push_back({pointer, there_is_no("probe of quantity head", name, of_head)});
     return probes.end();
   };
   const auto below = head_probe(watch.below, "/output/heave/below");

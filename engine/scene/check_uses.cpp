@@ -1,6 +1,7 @@
 // Names, materials and the initial state: what refers to what, and what nothing uses.
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "engine/scene/check_parts.hpp"
@@ -18,13 +19,8 @@ void check_unique(const Items& items, const char* list, Faults& faults) {
           {at_index(list, k, "/name"), "the name \"" + items[k].name + "\" is used twice: choose another"});
 }
 
-void check_soil(const std::string& name, const Soil& soil, Faults& faults) {
-  const SoilModel& model = soil.model;
-  if (soil.max_porosity && *soil.max_porosity <= soil.porosity)
-    faults.push_back(
-        {at_soil(name, "/max_porosity"), text(*soil.max_porosity) + " is not above the porosity " +
-                                             text(soil.porosity) + ": the grains would never touch"});
-  if (model.law != SoilLaw::mohr_coulomb) return;
+/// The Mohr–Coulomb cone: φ, ψ, c and what bounds and softens it.
+void check_cone(const std::string& name, const SoilModel& model, Faults& faults) {
   if (model.dilation_angle > model.friction_angle)
     faults.push_back({at_soil(name, "/model/dilation_angle"),
                       text(model.dilation_angle) + "° is above the friction angle " +
@@ -33,21 +29,68 @@ void check_soil(const std::string& name, const Soil& soil, Faults& faults) {
   if (model.friction_angle == 0 && model.cohesion == 0)
     faults.push_back({at_soil(name, "/model/friction_angle"),
                       "no friction and no cohesion: soil without strength; give one of them"});
+  if (model.residual_cohesion && *model.residual_cohesion >= model.cohesion)
+    faults.push_back({at_soil(name, "/model/residual_cohesion"),
+                      text(*model.residual_cohesion) + " Pa is not below the cohesion " +
+                          text(model.cohesion) + " Pa: it has no effect"});
+  const double degree = std::acos(-1.0) / 180;
+  const double apex = model.cohesion / std::tan(model.friction_angle * degree);
+  if (model.tension_cutoff && model.friction_angle > 0 && *model.tension_cutoff > apex)
+    faults.push_back({at_soil(name, "/model/tension_cutoff"),
+                      text(*model.tension_cutoff) + " Pa is above the cone's apex c/tan φ = " + text(apex) +
+                          " Pa: it has no effect"});
+}
+
+void check_soil(const std::string& name, const Soil& soil, Faults& faults) {
+  const SoilModel& model = soil.model;
+  if (soil.max_porosity && *soil.max_porosity <= soil.porosity)
+    faults.push_back(
+        {at_soil(name, "/max_porosity"), text(*soil.max_porosity) + " is not above the porosity " +
+                                             text(soil.porosity) + ": the grains would never touch"});
+  if (model.law == SoilLaw::modified_cam_clay && model.swelling_slope >= model.compression_slope)
+    faults.push_back({at_soil(name, "/model/swelling_slope"),
+                      text(model.swelling_slope) + " is not below the compression slope " +
+                          text(model.compression_slope) + ": unloading would be softer than loading"});
+  if (model.law == SoilLaw::mohr_coulomb) check_cone(name, model, faults);
 }
 
 void check_soil_uses(const Scene& scene, Faults& faults) {
   std::set<std::string> used;
+  std::vector<std::string> names;
+  for (const auto& [name, soil] : scene.soils) names.push_back(name);
   for (std::size_t k = 0; k < scene.bodies.size(); ++k) {
     const Body& body = scene.bodies[k];
     if (body.kind == BodyKind::water) continue;
     used.insert(body.soil);
     if (!scene.soils.contains(body.soil))
-      faults.push_back(
-          {at_index("bodies", k, "/soil"), "there is no soil \"" + body.soil + "\" in materials.soils"});
+      faults.push_back({at_index("bodies", k, "/soil"), there_is_no("soil", body.soil, names)});
   }
   for (const auto& [name, soil] : scene.soils)
     if (!used.contains(name))
       faults.push_back({at_soil(name), "no body is made of this soil: remove it or give it to a body"});
+}
+
+/// K0 acts on soil that moves, under weight; a soil's own wins over the scene's.
+void check_k0(const Scene& scene, Faults& faults) {
+  const bool weightless = scene.gravity == Vec3{0, 0, 0};
+  std::set<std::string> moving;
+  for (const Body& body : scene.bodies)
+    if (body.kind != BodyKind::water && !body.fixed) moving.insert(body.soil);
+  for (const auto& [name, soil] : scene.soils) {
+    if (!soil.k0) continue;
+    if (weightless) faults.push_back({at_soil(name, "/k0"), "has no effect without gravity: remove it"});
+    if (!moving.contains(name))
+      faults.push_back({at_soil(name, "/k0"), "has no effect: no body that moves is made of this soil"});
+  }
+  if (!scene.initial.k0) return;
+  if (weightless) faults.push_back({"/initial/k0", "has no effect without gravity: remove it"});
+  const auto has_own = [&](const std::string& name) {
+    const auto soil = scene.soils.find(name);
+    return soil != scene.soils.end() && soil->second.k0;
+  };
+  if (std::all_of(moving.begin(), moving.end(), has_own))
+    faults.push_back({"/initial/k0", moving.empty() ? "has no effect: no soil moves"
+                                                    : "has no effect: every soil that moves has its own k0"});
 }
 
 }  // namespace
@@ -66,11 +109,9 @@ void check_names(const Scene& scene, Faults& faults) {
 void check_materials(const Scene& scene, Faults& faults) {
   for (const auto& [name, soil] : scene.soils) check_soil(name, soil, faults);
   check_soil_uses(scene, faults);
-  const bool weightless = scene.gravity == Vec3{0, 0, 0};
-  if (weightless && scene.initial.water_table)
+  if (scene.gravity == Vec3{0, 0, 0} && scene.initial.water_table)
     faults.push_back({"/initial/water_table", "has no effect without gravity: remove it"});
-  if (weightless && scene.initial.k0)
-    faults.push_back({"/initial/k0", "has no effect without gravity: remove it"});
+  check_k0(scene, faults);
   const bool moving_soil = std::any_of(scene.bodies.begin(), scene.bodies.end(), [](const Body& body) {
     return body.kind != BodyKind::water && !body.fixed;
   });

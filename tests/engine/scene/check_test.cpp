@@ -109,6 +109,93 @@ TEST(Check, ReservoirsAndSectionsLieOnTheirLines) {
   EXPECT_EQ(pointers, (Pointers{"/output/sections/0/line/to", "/reservoirs/0/line", "/stages/0/heads/sea"}));
 }
 
+TEST(Check, StagesTakeBodiesOnceAndReachTheirHeads) {
+  const auto two = [](const std::function<void(Scene&)>& change) {
+    return after([&](Scene& s) {
+      s.stages.push_back(s.stages[0]);
+      s.stages[1].name = "after";
+      Load load;
+      load.name = "cover", load.body = "sand", load.traction = {0, -10, 0};
+      s.loads = {load};
+      s.reservoirs = {{"lake", {{0, 0.3, 0}, {0, 0.6, 0}}, 0.6}};
+      change(s);
+    });
+  };
+  EXPECT_EQ(two([](Scene&) {}), Pointers{});
+  EXPECT_EQ(two([](Scene& s) {
+              s.stages[1].heads = {{"lake", 0.5}};
+              s.stages[1].heads_ramp = 1.5;
+            }),
+            Pointers{"/stages/1/heads_ramp"});
+  EXPECT_EQ(two([](Scene& s) { s.stages[1].remove_bodies = {"sand"}; }), Pointers{});
+  EXPECT_EQ(two([](Scene& s) { s.stages[0].remove_bodies = {"sand"}; }), Pointers{"/loads/0"});
+  EXPECT_EQ(two([](Scene& s) { s.stages[0].remove_bodies = s.stages[1].remove_bodies = {"water"}; }),
+            Pointers{"/stages/1/remove_bodies/0"});
+  EXPECT_EQ(two([](Scene& s) {
+              s.stages[1].remove_bodies = {"water", "sand"};
+            }),
+            Pointers{"/stages/1/remove_bodies"});
+  EXPECT_EQ(two([](Scene& s) {
+              s.stages[1].remove_bodies = {"sand"};
+              s.stages[1].loads = std::vector<std::string>{"cover"};
+            }),
+            Pointers{"/stages/1/loads/0"});
+}
+
+TEST(Check, LawsHoldSensibleValues) {
+  const auto model = [](const std::function<void(SoilModel&)>& change) {
+    return after([&](Scene& s) { change(s.soils["sand"].model); });
+  };
+  const auto cam_clay = [](double swelling) {
+    return SoilModel{.law = SoilLaw::modified_cam_clay,
+                     .poisson_ratio = 0.2,
+                     .compression_slope = 0.2,
+                     .swelling_slope = swelling,
+                     .critical_state_slope = 1};
+  };
+  EXPECT_EQ(model([&](SoilModel& m) { m = cam_clay(0.04); }), Pointers{});
+  EXPECT_EQ(model([&](SoilModel& m) { m = cam_clay(0.2); }),
+            Pointers{"/materials/soils/sand/model/swelling_slope"});
+  EXPECT_EQ(model([](SoilModel& m) { m.cohesion = 100, m.residual_cohesion = 10; }), Pointers{});
+  EXPECT_EQ(model([](SoilModel& m) { m.cohesion = 100, m.residual_cohesion = 100; }),
+            Pointers{"/materials/soils/sand/model/residual_cohesion"});
+  EXPECT_EQ(model([](SoilModel& m) { m.cohesion = 100, m.tension_cutoff = 173; }),
+            Pointers{});  // apex: 173.2
+  EXPECT_EQ(model([](SoilModel& m) { m.cohesion = 100, m.tension_cutoff = 174; }),
+            Pointers{"/materials/soils/sand/model/tension_cutoff"});
+  EXPECT_EQ(model([](SoilModel& m) {
+              m.friction_angle = m.dilation_angle = 0, m.cohesion = 100, m.tension_cutoff = 1e9;
+            }),
+            Pointers{});
+}
+
+TEST(Check, K0ActsWhereSoilMoves) {
+  EXPECT_EQ(after([](Scene& s) { s.initial.k0 = 0.5; }), Pointers{});
+  EXPECT_EQ(after([](Scene& s) { s.soils["sand"].k0 = 0.5; }), Pointers{});
+  EXPECT_EQ(after([](Scene& s) { s.soils["sand"].k0 = s.initial.k0 = 0.5; }), Pointers{"/initial/k0"});
+  EXPECT_EQ(after([](Scene& s) {
+              s.soils["sand"].k0 = 0.5;
+              s.bodies[0].fixed = true;
+            }),
+            Pointers{"/materials/soils/sand/k0"});
+}
+
+TEST(Check, UnknownNamesListTheKnownOnes) {
+  Scene s = basin();
+  s.bodies[0].soil = "silt";
+  s.stages[0].open_gates = {"door"};
+  s.stages[0].remove_bodies = {"house"};
+  const auto said = [&](const std::string& pointer) {
+    for (const Fault& fault : check(s))
+      if (fault.pointer == pointer) return fault.detail;
+    return std::string();
+  };
+  EXPECT_EQ(said("/bodies/0/soil"), "there is no soil \"silt\": there is \"sand\"");
+  EXPECT_EQ(said("/stages/0/open_gates/0"), "there is no gate \"door\": the case has none");
+  EXPECT_EQ(said("/stages/0/remove_bodies/0"),
+            "there is no body \"house\": there are \"sand\" and \"water\"");
+}
+
 TEST(Check, TooManyEdgesAreRefusedRatherThanSlow) {
   EXPECT_EQ(after([](Scene& s) {
               Region many;
