@@ -27,6 +27,14 @@ class TerminalMonitor final : public RunMonitor {
   ProgressBar bar_;
 };
 
+/// A file of an earlier run in the folder, finished or left behind; empty if there is none.
+std::string earlier_result(const std::filesystem::path& folder) {
+  std::error_code ignored;
+  for (const char* name : {"result.vtkhdf", "result.vtkhdf.part", "result.xdmf", "run.json"})
+    if (std::filesystem::exists(folder / name, ignored)) return (folder / name).string();
+  return {};
+}
+
 }  // namespace
 
 const char* preset_name(Preset preset) {
@@ -57,6 +65,10 @@ void print_faults(const std::string& what, const std::vector<Fault>& faults) {
 int run_command(const RunCommand& command) {
   const auto text = read_case_file(command.case_file);
   if (!text) return exit_status::bad_input;
+  if (const std::string earlier = earlier_result(command.out); !earlier.empty() && !command.overwrite) {
+    std::cerr << earlier << " exists: give another folder to --out, or --overwrite to replace that run\n";
+    return exit_status::not_written;
+  }
   std::signal(SIGINT, [](int) { interrupted = true; });
   std::signal(SIGTERM, [](int) { interrupted = true; });
   Execution done;
@@ -78,6 +90,11 @@ int run_command(const RunCommand& command) {
   const auto report = read_text(std::filesystem::path(command.out) / "run.json");
   if (report) std::cout << headline_text(*report) << files_text(command.out);
   return done.report.status == RunStatus::succeeded ? exit_status::ok : exit_status::failed;
+}
+
+int schema_command() {
+  std::cout << case_schema();
+  return exit_status::ok;
 }
 
 int check_command(const std::string& case_file, const std::optional<Preset>& preset) {

@@ -12,7 +12,7 @@ namespace exit_status {
 constexpr int ok = 0;
 constexpr int failed = 1;       ///< the run failed or was canceled, or the server refused
 constexpr int bad_input = 2;    ///< every fault of the case is on standard error
-constexpr int not_written = 3;  ///< the results could not be stored
+constexpr int not_written = 3;  ///< the results could not be stored, or would replace others
 constexpr int no_server = 4;    ///< nobody answers at the URL
 }  // namespace exit_status
 
@@ -20,10 +20,14 @@ struct RunCommand {
   std::string case_file, out;
   std::optional<Preset> preset;
   int threads = 0;
+  bool overwrite = false;  ///< replace the results that `out` holds already
 };
 int run_command(const RunCommand& command);
 
 int check_command(const std::string& case_file, const std::optional<Preset>& preset);
+
+/// Prints the schema of case files.
+int schema_command();
 
 struct SubmitCommand {
   std::string case_file, url, label;

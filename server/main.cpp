@@ -66,12 +66,16 @@ void add_local_commands(CLI::App& app, CommandLine& line) {
   run->add_option("--out", line.run.out, "folder of the results")->required();
   add_preset(run, line.run.preset);
   run->add_option("--threads", line.run.threads, "0: all cores")->check(CLI::Range(0, 1024));
+  run->add_flag("--overwrite", line.run.overwrite, "replace an earlier run's results in that folder");
   run->callback([&line] { line.status = run_command(line.run); });
 
   CLI::App* check = app.add_subcommand("check", "print what a case would compute, or its faults");
   check->add_option("CASE", line.check_case, "case file (JSON)")->required();
   add_preset(check, line.check_preset);
   check->callback([&line] { line.status = check_command(line.check_case, line.check_preset); });
+
+  CLI::App* schema = app.add_subcommand("schema", "print the schema of case files");
+  schema->callback([&line] { line.status = schema_command(); });
 }
 
 void add_serve_command(CLI::App& app, CommandLine& line) {

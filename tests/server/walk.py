@@ -634,6 +634,27 @@ class CommandLineTest(ServerTest):
         self.assertEqual(quicksand("run", SMALL_CASE, "--out", out).returncode, 3)
         self.assertEqual(quicksand("run").returncode, 2)
 
+    def test_run_keeps_earlier_results(self):
+        out = os.path.join(self.folder, "kept")
+        self.assertEqual(quicksand("run", SMALL_CASE, "--out", out).returncode, 0)
+        result = os.path.join(out, "result.vtkhdf")
+        before = os.stat(result).st_mtime_ns
+        again = quicksand("run", SMALL_CASE, "--out", out)
+        self.assertEqual(again.returncode, 3)
+        self.assertIn("--overwrite", again.stderr)
+        self.assertEqual(os.stat(result).st_mtime_ns, before)
+        self.assertEqual(quicksand("run", SMALL_CASE, "--out", out, "--overwrite").returncode, 0)
+        self.assertGreater(os.stat(result).st_mtime_ns, before)
+        os.rename(result, result + ".part")  # what a killed run leaves
+        for name in ("result.xdmf", "run.json"):
+            os.remove(os.path.join(out, name))
+        self.assertEqual(quicksand("run", SMALL_CASE, "--out", out).returncode, 3)
+
+    def test_schema(self):
+        printed = quicksand("schema")
+        self.assertEqual(printed.returncode, 0)
+        self.assertEqual(json.loads(printed.stdout), self.server.get("/v1/schemas/case").json())
+
     def test_fetch_resumes_and_repairs(self):
         run_id = self.finished(small_case())
         out = os.path.join(self.folder, "resumed")
