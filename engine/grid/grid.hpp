@@ -1,11 +1,15 @@
 #pragma once
 // Background lattice: cubic cells of edge h, padded so that no kernel reaches outside the arrays.
 // One index serves cells and faces: face `c` of component d lies on the low side of cell `c` along d.
+//
+// About an axis the lattice is a half plane of radius x and height y, and every mass, volume, area and force
+// is per radian: that of the plane times the radius.
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <type_traits>
 
 namespace quicksand {
 
@@ -27,6 +31,7 @@ struct Grid {
   Vec<D> origin{};              ///< m, low corner of the domain
   double h = 1;                 ///< m
   double inverse_h = 1;         ///< 1/m
+  bool axial = false;           ///< x is the radius from an axis; D = 2 only
 
   Grid() = default;
   Grid(const Vec<D>& low, const Cell<D>& count, double edge)
@@ -42,6 +47,13 @@ struct Grid {
   int count() const { return stride[D - 1] * size[D - 1]; }
   double cell_volume() const { return D == 2 ? h * h : h * h * h; }  ///< m³ (per metre in the plane)
   double face_area() const { return D == 2 ? h : h * h; }            ///< m²
+  /// Factors of the areas and volumes above about an axis, the radius in metres; 1 otherwise.
+  double face_radius(int d, int face) const {
+    return axial ? origin[0] + (face % size[0] - pad + (d == 0 ? 0.0 : 0.5)) * h : 1;
+  }
+  bool on_axis(int d, int face) const { return axial && d == 0 && face_radius(d, face) < 0.25 * h; }
+  double cell_radius(int cell) const { return face_radius(kUp, cell); }
+  double radius(const Vec<D>& x) const { return axial ? x[0] : 1; }
 
   int index(const Cell<D>& c) const {
     int i = 0;
@@ -75,6 +87,15 @@ struct Grid {
     return x;
   }
 };
+
+/// f(std::true_type) about an axis, else f(std::false_type): loops over points and rows decide once.
+template <int D, class F>
+decltype(auto) with_axial(const Grid<D>& grid, F&& f) {
+  if constexpr (D == 2) {
+    if (grid.axial) return f(std::true_type{});
+  }
+  return f(std::false_type{});
+}
 
 /// Calls f(index, cell) for every cell of the domain, x fastest.
 template <int D, class F>

@@ -57,7 +57,9 @@ Grid<D> make_grid(const Scene& scene) {
     low[d] = scene.domain.min[d];
     count[d] = static_cast<int>(std::lround((scene.domain.max[d] - scene.domain.min[d]) / h));
   }
-  return Grid<D>(low, count, h);
+  Grid<D> grid(low, count, h);
+  grid.axial = scene.domain.dimension == Dimension::axisymmetric;
+  return grid;
 }
 
 template <int D>

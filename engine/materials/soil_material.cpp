@@ -71,10 +71,12 @@ Principal principal(const Stress<D>& s) {
 }
 
 template <int D>
-Stress<D> elastic_trial(const Elastic& e, const Stress<D>& stress, const Gradient<D>& l, double dt) {
+Stress<D> elastic_trial(const Elastic& e, const Stress<D>& stress, const Gradient<D>& l, double dt,
+                        double hoop) {
   Matrix gradient = Matrix::Zero();
   for (int i = 0; i < D; ++i)
     for (int j = 0; j < D; ++j) gradient(i, j) = l[i][j] * dt;
+  if constexpr (D == 2) gradient(2, 2) = hoop * dt;
   const Matrix strain = 0.5 * (gradient + gradient.transpose());
   const Matrix spin = 0.5 * (gradient - gradient.transpose());
   const Matrix s = to_matrix<D>(stress);
@@ -101,8 +103,8 @@ SoilMaterial SoilMaterial::from(const Soil& soil, const Water& water) {
 
 template <int D>
 StressUpdate<D> update_stress(const SoilMaterial& soil, const Stress<D>& stress, const Gradient<D>& l,
-                              double dt) {
-  const Stress<D> trial = elastic_trial<D>(soil.elastic, stress, l, dt);
+                              double dt, double hoop) {
+  const Stress<D> trial = elastic_trial<D>(soil.elastic, stress, l, dt, hoop);
   if (soil.law == SoilLaw::linear_elastic) return {trial, 0};
 
   const Principal p = principal<D>(trial);
@@ -117,7 +119,9 @@ StressUpdate<D> update_stress(const SoilMaterial& soil, const Stress<D>& stress,
   return {to_stress<D>(back), std::sqrt(2.0 / 3.0 * shear)};
 }
 
-template StressUpdate<2> update_stress<2>(const SoilMaterial&, const Stress<2>&, const Gradient<2>&, double);
-template StressUpdate<3> update_stress<3>(const SoilMaterial&, const Stress<3>&, const Gradient<3>&, double);
+template StressUpdate<2> update_stress<2>(const SoilMaterial&, const Stress<2>&, const Gradient<2>&, double,
+                                          double);
+template StressUpdate<3> update_stress<3>(const SoilMaterial&, const Stress<3>&, const Gradient<3>&, double,
+                                          double);
 
 }  // namespace quicksand

@@ -24,7 +24,8 @@ template <int D>
 using Gradient = std::array<Vec<D>, D>;
 
 /// Effective stress after a step of dt seconds with velocity gradient L (Jaumann rate), and the increment
-/// of equivalent plastic shear strain √(2/3 e:e). In the plane the out-of-plane strain is zero.
+/// of equivalent plastic shear strain √(2/3 e:e). In the plane the out-of-plane strain is zero; about an
+/// axis it grows at the rate `hoop` = v_r/r, 1/s.
 template <int D>
 struct StressUpdate {
   Stress<D> stress;
@@ -32,11 +33,11 @@ struct StressUpdate {
 };
 template <int D>
 StressUpdate<D> update_stress(const SoilMaterial& soil, const Stress<D>& stress, const Gradient<D>& l,
-                              double dt);
+                              double dt, double hoop = 0);
 
 extern template StressUpdate<2> update_stress<2>(const SoilMaterial&, const Stress<2>&, const Gradient<2>&,
-                                                 double);
+                                                 double, double);
 extern template StressUpdate<3> update_stress<3>(const SoilMaterial&, const Stress<3>&, const Gradient<3>&,
-                                                 double);
+                                                 double, double);
 
 }  // namespace quicksand

@@ -79,7 +79,8 @@ void measure(const Scene& scene, Plan& plan) {
   const double per_soil = 3 * sizeof(Vec<D>) + sizeof(Stress<D>) + 3 * sizeof(double) + 2 * sizeof(int) + 8;
   const double per_water = 3 * sizeof(Vec<D>) + sizeof(double) + sizeof(int) + 8;
   const double per_cell = D * (sizeof(FaceSums) + sizeof(FaceFlow) + sizeof(FixedFace)) +
-                          2 * sizeof(CellSums) + sizeof(CellState) + 2 * sizeof(double) + 2 * (D + 7);
+                          2 * sizeof(CellSums) + sizeof(CellState) + 2 * sizeof(double) + 2 * (D + 7) +
+                          (grid.axial ? (D + 1) * sizeof(double) : 0);
   plan.memory_bytes = per_soil * static_cast<double>(plan.soil_points + plan.fixed_soil_points) +
                       per_water * static_cast<double>(plan.water_points) + per_cell * grid.count();
 }
@@ -98,6 +99,8 @@ void explain(const Scene& scene, Plan& plan) {
   say(plan.has_viscosity, "Viscosity of the water: on its velocities, explicitly.", "No viscosity.");
   if (plan.fixed_soil_points)
     plan.reasons.push_back("Fixed soil resists the water and stops grains; its own stress is not computed.");
+  if (scene.domain.dimension == Dimension::axisymmetric)
+    plan.reasons.push_back("About an axis: x is the radius; masses, volumes and forces are per radian.");
   if (plan.has_water && !scene.water.bulk_modulus) plan.reasons.push_back("Water is incompressible.");
 }
 

@@ -8,6 +8,10 @@ namespace {
 
 int dimensions_of(const Scene& scene) { return scene.domain.dimension == Dimension::space ? 3 : 2; }
 
+/// Next to an axis v/r² adds to the radial component's Laplacian: at r = h its largest eigenvalue is at most
+/// 4.5/h² instead of 4/h² (Gershgorin's discs), an eighth of a dimension more.
+constexpr double kAxialViscosity = 0.125;
+
 /// The divergence sees a pressure's whole change of velocity, the points hand back only its smooth part s ≤ 1
 /// in the next step: p' = (1−a) p − b V, V' = V + s (a/b) p with a = (c κ Δt)², stable for a ≤ 4/(2−s). Of
 /// the shortest waves nearly nothing comes back (s = 0.02 in the plane), so that a ≤ 4 of the bare lattice is
@@ -30,12 +34,14 @@ std::vector<StepBound> wave_bounds(const Scene& scene, const StepSituation& now)
 
 std::vector<StepBound> step_bounds(const Scene& scene, const StepSituation& now) {
   const double h = scene.cell_size();
+  const double axial = scene.domain.dimension == Dimension::axisymmetric ? kAxialViscosity : 0;
   std::vector<StepBound> bounds = wave_bounds(scene, now);
   if (now.max_speed > 0) bounds.push_back({"motion", 0.5 * h / now.max_speed});
   const double g = std::hypot(scene.gravity[0], scene.gravity[1], scene.gravity[2]);
   if (now.has_water && g > 0) bounds.push_back({"surface wave", std::sqrt(h / g)});
   const double nu = scene.water.viscosity / scene.water.density;
-  if (now.has_water && nu > 0) bounds.push_back({"viscosity", h * h / (2 * dimensions_of(scene) * nu)});
+  if (now.has_water && nu > 0)
+    bounds.push_back({"viscosity", h * h / (2 * (dimensions_of(scene) + axial) * nu)});
   return bounds;
 }
 

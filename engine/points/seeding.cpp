@@ -57,11 +57,12 @@ PointCounts count_points(const Scene& scene, const Grid<D>& grid) {
 template <int D>
 SeededPoints<D> seed(const Scene& scene, const Grid<D>& grid) {
   SeededPoints<D> points;
-  double share = grid.cell_volume();
-  for (int d = 0; d < D; ++d) share /= scene.numerics.points_per_cell;
+  double part = grid.cell_volume();
+  for (int d = 0; d < D; ++d) part /= scene.numerics.points_per_cell;
   covered_places<D>(scene, grid, [&](const Vec<D>& x, std::size_t b) {
     const Body& body = scene.bodies[b];
     const Vec<D> v = first<D>(body.velocity);
+    const double share = part * grid.radius(x);
     double n = 1;
     if (body.kind != BodyKind::water) {
       const auto soil = scene.soils.find(body.soil);

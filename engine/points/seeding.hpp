@@ -19,8 +19,8 @@ template <int D>
 PointCounts count_points(const Scene& scene, const Grid<D>& grid);
 
 /// Points of all bodies on a regular lattice, `points_per_cell` along each axis, each with the mass of its
-/// share of the cell. Saturated soil gets a soil and a water point at each place. `SoilPoints::soil` is the
-/// place of the material in Scene::soils.
+/// share of the cell (about an axis times its radius). Saturated soil gets a soil and a water point at each
+/// place. `SoilPoints::soil` is the place of the material in Scene::soils.
 template <int D>
 SeededPoints<D> seed(const Scene& scene, const Grid<D>& grid);
 

@@ -43,7 +43,8 @@ void LedgerKeeper<D>::add(const State<D>& s, const StepReport<D>& step) {
   l.cut_steps = s.interventions.cut_steps;
   const double moving = step.moving_mass;
   double residual = 0, driving = 0;
-  for (int d = 0; d < D; ++d) {
+  // About an axis what points radially has no resultant: the momentum upwards is balanced alone.
+  for (int d = s.grid.axial ? kUp : 0; d < D; ++d) {
     const double impulse = moving * s.constants.gravity[d] * step.dt;
     driving += impulse * impulse + step.impulse_loads[d] * step.impulse_loads[d];
     l.impulse_gravity[d] += impulse;

@@ -78,8 +78,9 @@ template <int D>
 double porosity_at(const State<D>& s, const Vec<D>& x) {
   const PointKernel<D> kernel(s.grid, x);
   double grains = 0;
-  for_centers(s.grid, s.water_walls, kernel, [&](int c, double w) { grains += w * s.cell_sums[c].grains; });
-  return 1 - grains / s.grid.cell_volume();
+  for_centers(s.grid, s.water_walls, kernel,
+              [&](int c, double w) { grains += w * s.cell_sums[c].grains / s.volume.cell(c); });
+  return 1 - grains;
 }
 
 template <int D>
@@ -87,7 +88,8 @@ double water_volume(const State<D>& s) {
   return s.grid.cell_volume() * s.blocks.template sum<double>([&](int b) {
     double v = 0;
     s.blocks.cells(s.grid, b, false, [&](int i, const Cell<D>&) {
-      if (!s.water_walls.blocked(i)) v += s.cell[i].n * std::clamp(0.5 + s.cell[i].depth, 0.0, 1.0);
+      if (!s.water_walls.blocked(i))
+        v += s.grid.cell_radius(i) * s.cell[i].n * std::clamp(0.5 + s.cell[i].depth, 0.0, 1.0);
     });
     return v;
   });

@@ -23,7 +23,8 @@ Vec<D> soil_velocity_at(const State<D>& s, const Vec<D>& x);
 template <int D>
 double porosity_at(const State<D>& s, const Vec<D>& x);
 
-/// Volume below the water surface that grains leave to water, m³ (per metre in the plane).
+/// Volume below the water surface that grains leave to water, m³ (per metre in the plane, per radian about an
+/// axis).
 template <int D>
 double water_volume(const State<D>& s);
 

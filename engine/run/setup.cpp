@@ -43,13 +43,14 @@ SurfaceLoad<D> make_load(const Scene& scene, const Load& load, const State<D>& s
     Vec<D>& top = tops.try_emplace(column, s.soil.x[p]).first->second;
     if (s.soil.x[p][kUp] > top[kUp]) top = s.soil.x[p];
   }
+  const double area = D == 2 ? spacing : spacing * spacing;
   SurfaceLoad<D> result;
   for (auto& [column, top] : tops) {
     top[kUp] += 0.5 * spacing;
     result.marker.push_back(top);
+    result.area.push_back(area * s.grid.radius(top));
   }
-  const double area = D == 2 ? spacing : spacing * spacing;
-  for (int d = 0; d < D; ++d) result.force[d] = load.traction[d] * area;
+  for (int d = 0; d < D; ++d) result.traction[d] = load.traction[d];
   result.ramp = load.ramp;
   return result;
 }
@@ -95,6 +96,7 @@ void enter_stage(const Scene& scene, const Stage& stage, State<D>& s) {
   SceneWalls<D> walls = make_walls<D>(scene, s.grid, stage.open_gates);
   s.water_walls = std::move(walls.water);
   s.soil_walls = std::move(walls.soil);
+  s.volume = kernel_volumes<D>(s.grid, s.water_walls, scene.numerics.points_per_cell);
   for (std::size_t i = 0, k = 0; i < scene.loads.size(); ++i) {
     if (scene.loads[i].kind != Load::Kind::traction) continue;
     SurfaceLoad<D>& load = s.loads[k++];

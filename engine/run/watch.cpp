@@ -28,14 +28,14 @@ Vec<D> up(const Vec<D>& gravity) {
 }
 
 struct Rise {
-  double mean = 0, largest = 0;  ///< m: mean upward, largest |displacement|
+  double mean = 0, largest = 0;  ///< m: mean upward, by mass, largest |displacement|
 };
 
 template <int D>
 Rise rise_of(const State<D>& s, int body) {
   const Vec<D> u = up<D>(s.constants.gravity);
   Rise r;
-  std::size_t count = 0;
+  double mass = 0;
   for (std::size_t p = 0; p < s.soil.size(); ++p) {
     if (s.soil.body[p] != body) continue;
     double along = 0, square = 0;
@@ -44,11 +44,11 @@ Rise rise_of(const State<D>& s, int body) {
       along += move * u[d];
       square += move * move;
     }
-    r.mean += along;
+    r.mean += s.soil.mass[p] * along;
     r.largest = std::max(r.largest, std::sqrt(square));
-    ++count;
+    mass += s.soil.mass[p];
   }
-  if (count) r.mean /= static_cast<double>(count);
+  if (mass > 0) r.mean /= mass;
   return r;
 }
 

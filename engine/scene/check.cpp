@@ -54,7 +54,6 @@ void check_supported(const Scene& scene, Faults& faults) {
     if (used) faults.push_back({pointer, what + " is not supported yet"});
   };
   const Domain& domain = scene.domain;
-  refuse(domain.dimension == Dimension::axisymmetric, "/domain/dimension", "dimension axisymmetric");
   constexpr const char* sides[] = {"left", "right", "bottom", "top", "front", "back"};
   for (std::size_t k = 0; k < domain.sides.size(); ++k) {
     const std::string pointer = std::string("/domain/sides/") + sides[k] + "/kind";

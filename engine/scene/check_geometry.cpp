@@ -87,6 +87,22 @@ double check_extent(const Scene& scene, std::size_t axis, Faults& faults) {
   return std::max(along, 1.0);
 }
 
+/// About an axis x is the radius.
+void check_axis(const Scene& scene, Faults& faults) {
+  const double left = scene.domain.min[0];
+  if (left < 0)
+    faults.push_back({"/domain/min", "x is the radius in an axisymmetric scene: it begins at " + text(left) +
+                                         " m and must not be below 0"});
+  else if (left > 0 && left < 0.5 * scene.cell_size())
+    faults.push_back({"/domain/min", "x begins at " + text(left) + " m, less than half of " +
+                                         cell_words(scene) + ": begin at the axis, x = 0, or farther out"});
+  const SideKind kind = scene.domain.sides[0].kind;
+  if (left == 0 && (kind == SideKind::no_slip || kind == SideKind::open))
+    faults.push_back({"/domain/sides/left/kind", "the left side is the axis: leave it out or give symmetry"});
+  if (scene.gravity[0] != 0)
+    faults.push_back({"/gravity", "must point along the axis: give (0, " + text(scene.gravity[1]) + ")"});
+}
+
 }  // namespace
 
 std::size_t axes(const Scene& scene) { return scene.domain.dimension == Dimension::space ? 3 : 2; }
@@ -115,13 +131,11 @@ bool check_grid(const Scene& scene, Faults& faults) {
   const std::size_t before = faults.size();
   double cells = 1;
   for (std::size_t axis = 0; axis < axes(scene); ++axis) cells *= check_extent(scene, axis, faults);
+  if (scene.domain.dimension == Dimension::axisymmetric) check_axis(scene, faults);
   if (cells > max_cells)
     faults.push_back({"/domain/cell_size", cell_words(scene) + " make " + text(cells) + " of them: at most " +
                                                text(max_cells) +
                                                " are allowed; give larger cells or a smaller domain"});
-  if (scene.domain.dimension == Dimension::axisymmetric && scene.domain.min[0] < 0)
-    faults.push_back({"/domain/min", "x begins at " + text(scene.domain.min[0]) +
-                                         " m: it is the radius in an axisymmetric scene; give at least 0"});
   return faults.size() == before;
 }
 

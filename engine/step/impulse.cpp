@@ -15,12 +15,12 @@ template <int D>
 double soil_reaction(const State<D>& s, int d, int face, double dt) {
   const FaceSums& sums = s.sums[d][face];
   const FaceFlow& f = s.flow[d][face];
-  if (sums.soil_mass <= kMassCutoff * s.constants.water_density * s.grid.cell_volume()) return 0;
+  if (sums.soil_mass <= kMassCutoff * s.constants.water_density * s.volume.face(d, face)) return 0;
   const double change = f.soil - f.soil_old;
   const double mirrored = -s.image[d][face].soil * change;
   const bool stopped = s.soil_walls.closed(d, face) && f.soil == 0;
   if (stopped) {
-    const double drag = f.exchange * s.grid.cell_volume();
+    const double drag = f.exchange * s.volume.face(d, face);
     return mirrored + sums.soil_mass * (change - dt * s.constants.gravity[d]) - drag;
   }
   const double pressure = feels_pressure(s, d, face) ? -sums.grains * felt_gradient(s, d, face) : 0;
@@ -45,7 +45,7 @@ double surface_support(const State<D>& s, int d, int face, double dt) {
   const FaceFlow& f = s.flow[d][face];
   if (f.wet < 2) return 0;
   return sums.water_mass * (f.water - f.water_old - dt * s.constants.gravity[d]) +
-         f.exchange * s.grid.cell_volume();
+         f.exchange * s.volume.face(d, face);
 }
 
 template <int D>

@@ -30,7 +30,9 @@ void number_rows(State<D>& s, PressureSystem<D>& m) {
   });
 }
 
-template <int D>
+/// About an axis a row is the balance of its cell per radian, so that the matrix stays symmetric: storage and
+/// drift times the cell's radius, fluxes times their face's.
+template <int D, bool kAxial>
 void assemble(State<D>& s, PressureSystem<D>& m, double dt) {
   const std::size_t rows = m.cell.size();
   m.diagonal.resize(rows), m.rhs.resize(rows), m.solution.resize(rows);
@@ -40,9 +42,10 @@ void assemble(State<D>& s, PressureSystem<D>& m, double dt) {
     for (std::size_t r = range.begin(); r < range.end(); ++r) {
       const int i = m.cell[r];
       const CellState& c = s.cell[i];
-      const double storage = c.n * s.constants.water_compliance / dt;
+      const double radius = kAxial ? s.grid.cell_radius(i) : 1;
+      const double storage = radius * c.n * s.constants.water_compliance / dt;
       double diagonal = storage;
-      double rhs = storage * s.pressure[i] + drift_rate(c.excess, s.constants.drift_time);
+      double rhs = storage * s.pressure[i] + radius * drift_rate(c.excess, s.constants.drift_time);
       for (int d = 0; d < D; ++d) {
         m.upper[d][r] = m.lower[d][r] = -1;
         m.coupling[d][r] = 0;
@@ -50,8 +53,9 @@ void assemble(State<D>& s, PressureSystem<D>& m, double dt) {
           const int face = i + side * s.grid.stride[d], other = i + (2 * side - 1) * s.grid.stride[d];
           if (s.water_walls.closed(d, face)) continue;
           const FaceFlow& f = s.flow[d][face];
-          rhs += (1 - 2 * side) * f.flux() * inverse_h;
-          const double beta = f.flux_response() * inverse_h2;
+          const double at = kAxial ? s.grid.face_radius(d, face) : 1;
+          rhs += (1 - 2 * side) * at * f.flux() * inverse_h;
+          const double beta = at * f.flux_response() * inverse_h2;
           const CellState& o = s.cell[other];
           if (o.unknown < 0) {
             diagonal += beta / surface_distance(c.depth, o.depth);
@@ -209,7 +213,7 @@ PressureReport solve_pressure(State<D>& s, double dt) {
   PressureSystem<D>& system = s.pressure_system;
   number_rows(s, system);
   if (system.cell.empty()) return {};
-  assemble(s, system, dt);
+  with_axial(s.grid, [&](auto axial) { assemble<D, axial>(s, system, dt); });
   PressureReport report{static_cast<int>(system.cell.size())};
   if (s.constants.explicit_pressure)
     advance_explicitly(system);

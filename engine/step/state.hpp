@@ -3,11 +3,12 @@
 //
 // Symbols (suffix _p point, _f face, _c cell): φ = 1−n grain fraction, n porosity, p water pressure (Pa,
 // compression positive), vs vw velocities of grains and water, q = φ vs + n vw flux of the mixture,
-// R drag (N·s/m⁴), h cell edge, V = h^D.
+// R drag (N·s/m⁴), h cell edge, V = h^D (about an axis times the radius).
 
 #include <cstdint>
 #include <vector>
 
+#include "engine/grid/kernel_volumes.hpp"
 #include "engine/grid/walls.hpp"
 #include "engine/materials/stability.hpp"
 #include "engine/points/blocks.hpp"
@@ -103,7 +104,8 @@ struct Constants {
 template <int D>
 struct SurfaceLoad {
   std::vector<Vec<D>> marker;  ///< m
-  Vec<D> force{};              ///< N per marker at full load
+  std::vector<double> area;    ///< m², of each marker; about an axis times the radius at the start
+  Vec<D> traction{};           ///< Pa at full load
   double start = 0, ramp = 0;  ///< s
   bool active = false;
 };
@@ -125,6 +127,7 @@ struct State {
   SoilPoints<D> fixed;  ///< grains held in place
   WaterPoints<D> water;
   BlockList soil_blocks, water_blocks;
+  KernelVolumes<D> volume;
   std::vector<SurfaceLoad<D>> loads;
 
   std::array<std::vector<FaceSums>, D> sums;

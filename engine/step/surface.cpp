@@ -24,13 +24,13 @@ double depth_of_fill(double fill) {
 
 template <int D>
 void find_surface(State<D>& s) {
-  const double volume = s.grid.cell_volume();
   s.blocks.all([&](int b) {
     s.blocks.cells(s.grid, b, false, [&](int i, const Cell<D>&) {
       const CellSums& sums = s.cell_sums[i];
       CellState& c = s.cell[i];
       c = {};
       if (s.water_walls.blocked(i)) return;
+      const double volume = s.volume.cell(i);
       c.n = std::max(1 - sums.grains / volume, kMinRoom);
       c.fill = fill_of(sums.water / volume, sums.grains / volume, sums.soil_bulk / volume);
       c.depth = depth_of_fill(c.fill);
@@ -43,7 +43,7 @@ void find_surface(State<D>& s) {
     s.blocks.cells(s.grid, b, false, [&](int i, const Cell<D>&) {
       CellState& c = s.cell[i];
       if (c.unknown < 0) return;
-      const double excess = (s.cell_sums[i].water + s.cell_sums[i].grains) / volume - 1;
+      const double excess = (s.cell_sums[i].water + s.cell_sums[i].grains) / s.volume.cell(i) - 1;
       c.confined = true;
       for (int d = 0; d < D; ++d)
         for (int side : {0, 1}) {

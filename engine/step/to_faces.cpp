@@ -15,7 +15,7 @@ Vec<D> stress_row(const Stress<D>& s, int d) {
     return d == 0 ? Vec<3>{s[0], s[3], s[5]} : d == 1 ? Vec<3>{s[3], s[1], s[4]} : Vec<3>{s[5], s[4], s[2]};
 }
 
-template <int D>
+template <int D, bool kAxial>
 void soil_to_faces(State<D>& s, std::uint32_t p) {
   const SoilPoints<D>& soil = s.soil;
   const SoilMaterial& material = s.constants.soils[soil.soil[p]];
@@ -23,6 +23,8 @@ void soil_to_faces(State<D>& s, std::uint32_t p) {
   const double mass = soil.mass[p], n = soil.porosity[p];
   const double grains = mass / material.grain_density, bulk = grains / (1 - n);
   const double resistivity = s.water.size() ? bulk * material.drag.resistivity(n) : 0;
+  // The hoop stress pulls towards the axis: the weak form's σθθ v_r/r.
+  const double hoop = kAxial ? soil.stress[p][2] / soil.x[p][0] : 0;
   for (int d = 0; d < D; ++d) {
     const Vec<D> stress = stress_row<D>(soil.stress[p], d);
     const double momentum = mass * soil.v[p][d];
@@ -30,6 +32,7 @@ void soil_to_faces(State<D>& s, std::uint32_t p) {
       FaceSums& f = s.sums[d][face];
       double divergence = 0;
       for (int j = 0; j < D; ++j) divergence += stress[j] * g[j];
+      if (kAxial && d == 0) divergence += w * hoop;
       f.soil_mass += w * mass;
       f.grains += w * grains;
       f.soil_bulk += w * bulk;
@@ -70,12 +73,13 @@ void loads_to_faces(State<D>& s) {
   for (const SurfaceLoad<D>& load : s.loads) {
     if (!load.active) continue;
     const double rise = load.ramp > 0 ? std::min(1.0, (s.time - load.start) / load.ramp) : 1.0;
-    for (const Vec<D>& x : load.marker) {
-      const PointKernel<D> kernel(s.grid, x);
-      for (int d = 0; d < D; ++d) s.load_force[d] += rise * load.force[d];
+    for (std::size_t m = 0; m < load.marker.size(); ++m) {
+      const PointKernel<D> kernel(s.grid, load.marker[m]);
+      const double pull = rise * load.area[m];
+      for (int d = 0; d < D; ++d) s.load_force[d] += pull * load.traction[d];
       for (int d = 0; d < D; ++d)
         for_faces(s.grid, s.soil_walls, kernel, d, [&](int face, double w, double sign, const Vec<D>&) {
-          s.sums[d][face].soil_force += sign * w * rise * load.force[d];
+          s.sums[d][face].soil_force += sign * w * pull * load.traction[d];
         });
     }
   }
@@ -98,11 +102,13 @@ void points_to_faces(State<D>& s) {
       s.cell_sums[i] = has_fixed ? s.fixed_cell[i] : CellSums{};
     });
   });
-  s.blocks.by_color([&](int b) {
-    for (auto i = s.soil_blocks.begin[b]; i < s.soil_blocks.begin[b + 1]; ++i)
-      soil_to_faces(s, s.soil_blocks.order[i]);
-    for (auto i = s.water_blocks.begin[b]; i < s.water_blocks.begin[b + 1]; ++i)
-      water_to_faces(s, s.water_blocks.order[i]);
+  with_axial(s.grid, [&](auto axial) {
+    s.blocks.by_color([&](int b) {
+      for (auto i = s.soil_blocks.begin[b]; i < s.soil_blocks.begin[b + 1]; ++i)
+        soil_to_faces<D, axial>(s, s.soil_blocks.order[i]);
+      for (auto i = s.water_blocks.begin[b]; i < s.water_blocks.begin[b + 1]; ++i)
+        water_to_faces(s, s.water_blocks.order[i]);
+    });
   });
   loads_to_faces(s);
 }
@@ -111,7 +117,6 @@ template <int D>
 void measure_fixed(State<D>& s) {
   for (auto& f : s.fixed_face) f.assign(s.grid.count(), {});
   s.fixed_cell.assign(s.grid.count(), {});
-  const double volume = s.grid.cell_volume();
   for (std::size_t p = 0; p < s.fixed.size(); ++p) {
     const SoilMaterial& material = s.constants.soils[s.fixed.soil[p]];
     const PointKernel<D> kernel(s.grid, s.fixed.x[p]);
@@ -119,6 +124,7 @@ void measure_fixed(State<D>& s) {
     const double bulk = grains / (1 - n), resistivity = material.drag.resistivity(n);
     for (int d = 0; d < D; ++d)
       for_faces(s.grid, s.soil_walls, kernel, d, [&](int face, double w, double, const Vec<D>&) {
+        const double volume = s.volume.face(d, face);
         s.fixed_face[d][face].phi += w * grains / volume;
         s.fixed_face[d][face].bulk += w * bulk / volume;
         s.fixed_face[d][face].resistivity += w * bulk * resistivity / volume;

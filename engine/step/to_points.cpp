@@ -124,7 +124,7 @@ double strain_energy(const State<D>& s, std::size_t p) {
   return volume * (0.25 * (square - trace * trace / 3) / e.shear + trace * trace / (18 * e.bulk));
 }
 
-template <int D>
+template <int D, bool kAxial>
 void soil_from_faces(State<D>& s, std::uint32_t p, double dt, double pic, Totals<D>& totals) {
   SoilPoints<D>& soil = s.soil;
   const SoilMaterial& material = s.constants.soils[soil.soil[p]];
@@ -146,10 +146,11 @@ void soil_from_faces(State<D>& s, std::uint32_t p, double dt, double pic, Totals
     totals.momentum[d] += soil.mass[p] * v;
     speed2 += v * v;
   }
+  const double hoop = kAxial ? step[0] / (dt * soil.x[p][0]) : 0;  // 1/s, v_r/r
   totals.interventions.clipped_points += move<D>(s.grid, s.soil_walls, kernel.home, soil.x[p], step);
 
   // Dˢn/Dt = (1−n) ∇·vˢ, integrated: the grains' volume stays.
-  double divergence = 0;
+  double divergence = hoop;
   for (int d = 0; d < D; ++d) divergence += l[d][d];
   double& n = soil.porosity[p];
   const double exact = 1 - (1 - n) / std::max(1 + dt * divergence, 0.1);
@@ -159,7 +160,7 @@ void soil_from_faces(State<D>& s, std::uint32_t p, double dt, double pic, Totals
   if (n > material.max_porosity) {
     soil.stress[p] = {};  // the grains do not touch
   } else {
-    const StressUpdate<D> u = update_stress<D>(material, soil.stress[p], l, dt);
+    const StressUpdate<D> u = update_stress<D>(material, soil.stress[p], l, dt, hoop);
     soil.stress[p] = u.stress;
     soil.plastic_strain[p] += u.plastic_strain;
   }
@@ -203,13 +204,15 @@ void faces_to_points(State<D>& s, double dt, StepReport<D>& report) {
   const Supports<D> supports = support_impulses(s, dt, pic);
   report.impulse_walls = supports.walls;
   report.impulse_surface = supports.surface;
-  const Totals<D> totals = s.blocks.template sum<Totals<D>>([&](int b) {
-    Totals<D> t;
-    for (auto i = s.soil_blocks.begin[b]; i < s.soil_blocks.begin[b + 1]; ++i)
-      soil_from_faces(s, s.soil_blocks.order[i], dt, pic, t);
-    for (auto i = s.water_blocks.begin[b]; i < s.water_blocks.begin[b + 1]; ++i)
-      water_from_faces(s, s.water_blocks.order[i], dt, pic, t);
-    return t;
+  const Totals<D> totals = with_axial(s.grid, [&](auto axial) {
+    return s.blocks.template sum<Totals<D>>([&](int b) {
+      Totals<D> t;
+      for (auto i = s.soil_blocks.begin[b]; i < s.soil_blocks.begin[b + 1]; ++i)
+        soil_from_faces<D, axial>(s, s.soil_blocks.order[i], dt, pic, t);
+      for (auto i = s.water_blocks.begin[b]; i < s.water_blocks.begin[b + 1]; ++i)
+        water_from_faces(s, s.water_blocks.order[i], dt, pic, t);
+      return t;
+    });
   });
   move_loads(s, dt);
   for (int d = 0; d < D; ++d) report.impulse_surface[d] += totals.let_go[d];

@@ -62,9 +62,10 @@ void solve_soil(const Balance& b, double dt, FaceFlow& f) {
 }
 
 /// +1 or −1: the direction in which grains may leave a closed face; 0: neither (walls of no thickness,
-/// which may have grains on both sides).
+/// which may have grains on both sides; an axis).
 template <int D>
 int leaving_direction(const State<D>& s, int d, int face) {
+  if (s.grid.on_axis(d, face)) return 0;
   const bool low = s.soil_walls.blocked(face - s.grid.stride[d]), high = s.soil_walls.blocked(face);
   return low == high ? 0 : low ? 1 : -1;
 }
@@ -74,7 +75,7 @@ template <int D>
 double wet_part(const State<D>& s, int d, int face) {
   if (s.cell[face].unknown >= 0 && s.cell[face - s.grid.stride[d]].unknown >= 0) return 1;
   const FaceSums& f = s.sums[d][face];
-  const double volume = s.grid.cell_volume();
+  const double volume = s.volume.face(d, face);
   const FixedFace fixed = s.fixed.size() ? s.fixed_face[d][face] : FixedFace{};
   const double grains = f.grains / volume + fixed.phi, bulk = f.soil_bulk / volume + fixed.bulk;
   const double fill = fill_of(f.water_mass / (s.constants.water_density * volume), grains, bulk);
@@ -86,7 +87,7 @@ void predict_face(State<D>& s, int d, int face, double dt) {
   const FaceSums& sums = s.sums[d][face];
   FaceFlow& f = s.flow[d][face];
   f = {};
-  const double volume = s.grid.cell_volume(), g = s.constants.gravity[d], rho = s.constants.water_density;
+  const double volume = s.volume.face(d, face), g = s.constants.gravity[d], rho = s.constants.water_density;
   const bool soil = sums.soil_mass > kMassCutoff * rho * volume;
   const bool water_open = !s.water_walls.closed(d, face);
   const bool water = water_open && sums.water_mass > kMassCutoff * rho * volume;

@@ -25,8 +25,27 @@ double difference(const State<D>& s, int d, int face, int axis, int side) {
       if (s.water_walls.closed(axis, wall)) return s.water_walls.no_slip(axis, wall) ? -2 * v : 0;
     }
   }
-  if (s.sums[d][other].water_mass <= kMassCutoff * s.constants.water_density * s.grid.cell_volume()) return 0;
+  if (s.sums[d][other].water_mass <= kMassCutoff * s.constants.water_density * s.volume.face(d, other))
+    return 0;
   return old_velocity(s, d, other) - v;
+}
+
+}  // namespace
+
+namespace {
+
+/// h² ∇²v about an axis: (1/r) ∂(r ∂v/∂r)/∂r + ∂²v/∂z², less v/r² of the radial component.
+double axial_laplacian(const State<2>& s, int d, int face) {
+  const Grid<2>& grid = s.grid;
+  const double r = grid.face_radius(d, face);
+  double sum = difference(s, d, face, 1, 0) + difference(s, d, face, 1, 1);
+  for (int side : {0, 1}) {
+    // Between faces of the radial component lie cell centres, between those of the other its faces.
+    const double between =
+        d == 0 ? grid.cell_radius(side ? face : face - 1) : grid.face_radius(0, face + side);
+    sum += between / r * difference(s, d, face, 0, side);
+  }
+  return d == 0 ? sum - old_velocity(s, d, face) * grid.h * grid.h / (r * r) : sum;
 }
 
 }  // namespace
@@ -34,7 +53,10 @@ double difference(const State<D>& s, int d, int face, int axis, int side) {
 template <int D>
 double viscous_acceleration(const State<D>& s, int d, int face) {
   double sum = 0;
-  for (int axis = 0; axis < D; ++axis)
+  if constexpr (D == 2) {
+    if (s.grid.axial) sum = axial_laplacian(s, d, face);
+  }
+  for (int axis = 0; axis < D && !s.grid.axial; ++axis)
     for (int side : {0, 1}) sum += difference(s, d, face, axis, side);
   return s.constants.viscosity / s.constants.water_density * sum * s.grid.inverse_h * s.grid.inverse_h;
 }

@@ -211,7 +211,6 @@ const Mutation of_sense[] = {
 };
 
 const Mutation not_supported_yet[] = {
-    {"Axisymmetric", ADD("/domain/dimension", R"("axisymmetric")"), {"/domain/dimension"}},
     {"OpenSide", ADD("/domain/sides/top", R"({"kind":"open"})"), {"/domain/sides/top/kind"}},
     {"SymmetrySide", ADD("/domain/sides/left", R"({"kind":"symmetry"})"), {"/domain/sides/left/kind"}},
     {"Ergun",

@@ -1,4 +1,4 @@
-// The same answers in the plane and in space, from one path of code.
+// The same answers in the plane, about an axis and in space, from one path of code.
 
 #include <gtest/gtest.h>
 
@@ -159,14 +159,34 @@ double largest_difference(const std::vector<double>& a, const std::vector<double
 }
 
 /// What holds of the plane (terzaghi_test.cpp) holds of every other dimension.
-TEST(Space, ConsolidatesAsThePlaneDoes) {
-  const Recorded plane = consolidation(Dimension::plane_strain, 10),
-                 space = consolidation(Dimension::space, 10);
+void expect_as_in_the_plane(Dimension dimension) {
+  const Recorded plane = consolidation(Dimension::plane_strain, 10), other = consolidation(dimension, 10);
   const double difference =
-      largest_difference(plane.results.series("probe.base"), space.results.series("probe.base"));
+      largest_difference(plane.results.series("probe.base"), other.results.series("probe.base"));
   std::printf("largest difference of the base pressure to the plane's: %.1e of the load\n", difference / 1e4);
   EXPECT_GT(plane.results.series("probe.base").front(), 0.99e4);
   EXPECT_LT(difference, 1e-4 * 1e4);  // the pressure is solved for to 1e-6 of a step's change
+}
+
+TEST(Space, ConsolidatesAsThePlaneDoes) { expect_as_in_the_plane(Dimension::space); }
+TEST(Axisymmetric, ConsolidatesAsThePlaneDoes) { expect_as_in_the_plane(Dimension::axisymmetric); }
+
+/// Layered ground about the axis, a step in the floor outside, a pile of no thickness.
+TEST(Axisymmetric, ClosedTankWithAStepStaysAtRest) {
+  Scene s = scene(Dimension::axisymmetric, {0.4, 0.4, 0}, 0.025, 0.5);
+  s.soils = {{"loose", sand(0.5, 1e-2, 5e6)}, {"dense", sand(0.35, 1e-3, 2e7)}};
+  Wall step, pile;
+  step.name = "step";
+  step.block = body("", BodyKind::soil, {0.2, 0, 0}, {0.4, 0.1, 0}).region;
+  pile.name = "pile";
+  pile.line = Segment{{0.3, 0.15, 0}, {0.3, 0.4, 0}};
+  s.walls = {step, pile};
+  s.bodies = {body("lower", BodyKind::saturated_soil, {0, 0, 0}, {0.2, 0.1, 0}, "dense"),
+              body("upper", BodyKind::saturated_soil, {0, 0.1, 0}, {0.2, 0.2, 0}, "loose"),
+              body("above", BodyKind::water, {0, 0.2, 0}, {0.2, 0.3, 0}),
+              body("beside", BodyKind::water, {0.2, 0.1, 0}, {0.4, 0.3, 0})};
+  ASSERT_TRUE(check(s).empty());
+  expect_rest(s, 0.3, 1e-3);
 }
 
 }  // namespace
