@@ -15,6 +15,13 @@ Json bounds_json(const std::vector<StepBound>& bounds) {
   return list;
 }
 
+Json stages_json(const std::vector<StagePlan>& stages) {
+  Json list = Json::array();
+  for (const StagePlan& stage : stages)
+    list.push_back({{"name", stage.name}, {"begin", stage.begin}, {"end", stage.end}, {"does", stage.does}});
+  return list;
+}
+
 Json to_json(const Plan& p) {
   return {{"dimensions", p.dimensions},
           {"cells", p.cells},
@@ -23,6 +30,7 @@ Json to_json(const Plan& p) {
           {"has_water", p.has_water},
           {"has_viscosity", p.has_viscosity},
           {"reasons", p.reasons},
+          {"stages", stages_json(p.stages)},
           {"soil_points", p.soil_points},
           {"fixed_soil_points", p.fixed_soil_points},
           {"water_points", p.water_points},

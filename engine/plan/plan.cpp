@@ -118,6 +118,7 @@ Plan make_plan(const Scene& scene) {
   plan.has_water = plan.water_points > 0;
   plan.has_viscosity = plan.has_water && scene.water.viscosity > 0;
   explain(scene, plan);
+  plan.stages = plan_stages(scene);
 
   double speed = 0;
   for (const Body& body : scene.bodies)

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/plan/stage_plan.hpp"
 #include "engine/scene/scene.hpp"
 
 namespace quicksand {
@@ -21,6 +22,7 @@ struct Plan {
   double cell_size = 0;  ///< m
   bool has_soil = false, has_water = false, has_viscosity = false;
   std::vector<std::string> reasons;  ///< plain sentences: what is modelled or left out and why
+  std::vector<StagePlan> stages;     ///< what each one does
   std::size_t soil_points = 0, fixed_soil_points = 0, water_points = 0;
   double memory_bytes = 0;
   double time_step = 0;  ///< s, at the start

@@ -1,7 +1,6 @@
 #include "engine/scene/check.hpp"
 
 #include <algorithm>
-#include <charconv>
 
 #include "engine/scene/check_parts.hpp"
 
@@ -26,27 +25,6 @@ std::string there_is_no(const std::string& what, const std::string& name,
   for (std::size_t k = 0; k < std::min(names.size(), most); ++k)
     words += std::string(k == 0 ? "" : k + 1 == names.size() ? " and" : ",") + " \"" + names[k] + "\"";
   return names.size() > most ? words + " and " + std::to_string(names.size() - most) + " more" : words;
-}
-
-std::string text(double value) {
-  char buffer[32];
-  const auto end =
-      std::to_chars(buffer, buffer + sizeof buffer, value == 0 ? 0.0 : value, std::chars_format::general, 9);
-  return std::string(buffer, end.ptr);
-}
-
-std::string text(const Scene& scene, const Vec3& point) {
-  std::string words = "(" + text(point[0]) + ", " + text(point[1]);
-  if (axes(scene) == 3) words += ", " + text(point[2]);
-  return words + ")";
-}
-
-std::string cell_words(const Scene& scene) {
-  const double factor = scene.numerics.cell_size_factor;
-  std::string words = "cells of " + text(scene.cell_size()) + " m";
-  if (factor != 1)
-    words += " (cell_size " + text(scene.domain.cell_size) + " × cell_size_factor " + text(factor) + ")";
-  return words;
 }
 
 void check_supported(const Scene& scene, Faults& faults) {

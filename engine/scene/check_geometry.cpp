@@ -105,8 +105,6 @@ void check_axis(const Scene& scene, Faults& faults) {
 
 }  // namespace
 
-std::size_t axes(const Scene& scene) { return scene.domain.dimension == Dimension::space ? 3 : 2; }
-
 long cells_along(const Scene& scene, std::size_t axis) {
   return axis < axes(scene) ? std::lround(in_cells(scene, axis, scene.domain.max[axis])) : 1;
 }

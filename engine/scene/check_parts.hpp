@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "engine/scene/scene.hpp"
+#include "engine/scene/stages.hpp"
+#include "engine/scene/text.hpp"
 
 namespace quicksand {
 
@@ -30,17 +32,11 @@ void check_probe_places(const Scene& scene, Faults& faults);
 /// Regions of bodies against the domain, the blocks and each other. Needs a sound grid.
 void check_bodies(const Scene& scene, Faults& faults);
 
-std::size_t axes(const Scene& scene);  ///< 2 in the plane, 3 in space
 /// Number of cells along an axis of a sound grid; 1 along the third axis of the plane.
 long cells_along(const Scene& scene, std::size_t axis);
 bool is_box(const std::optional<Region>& block);
 /// False, and a fault, if the box is empty.
 bool check_box(const Scene& scene, const Region& box, const std::string& pointer, Faults& faults);
-
-/// Whether the body is still there in a stage.
-bool present(const Scene& scene, std::size_t stage, const std::string& body);
-/// Whether the load acts in a stage.
-bool acts(const Scene& scene, std::size_t stage, const Load& load);
 
 // Words of faults.
 /// "there is no gate "door": there are "valve" and "sluice""
@@ -57,8 +53,5 @@ inline std::string at_index(const char* list, std::size_t index, const std::stri
 }
 std::string escaped(const std::string& name);  ///< a name as one step of a JSON pointer
 std::string at_soil(const std::string& name, const std::string& rest = {});
-std::string text(double value);  ///< shortest text that reads back as the value to 9 digits
-std::string text(const Scene& scene, const Vec3& point);  ///< "(x, y)" or "(x, y, z)"
-std::string cell_words(const Scene& scene);               ///< "cells of 0.04 m (cell_size 0.02 × factor 2)"
 
 }  // namespace quicksand

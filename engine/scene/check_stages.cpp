@@ -161,18 +161,6 @@ void check_heave(const Scene& scene, const HeaveWatch& watch, Faults& faults) {
 
 }  // namespace
 
-bool present(const Scene& scene, std::size_t stage, const std::string& body) {
-  return std::none_of(
-      scene.stages.begin(), scene.stages.begin() + static_cast<std::ptrdiff_t>(stage) + 1,
-      [&](const Stage& s) { return std::count(s.remove_bodies.begin(), s.remove_bodies.end(), body) > 0; });
-}
-
-bool acts(const Scene& scene, std::size_t stage, const Load& load) {
-  const auto& loads = scene.stages[stage].loads;
-  return present(scene, stage, load.body) &&
-         (!loads || std::count(loads->begin(), loads->end(), load.name) > 0);
-}
-
 void check_stages(const Scene& scene, Faults& faults) {
   if (scene.stages.empty()) faults.push_back({"/stages", "there is no stage: give at least one"});
   for (std::size_t k = 0; k < scene.stages.size(); ++k) check_stage(scene, k, faults);

@@ -14,6 +14,7 @@ TEST(PlanJson, CarriesTheFieldsOfThePlan) {
   Plan plan;
   plan.cells = {30, 30, 1};
   plan.reasons = {"water is modelled"};
+  plan.stages = {{"rest", 0, 2, {"Gates closed: valve."}}};
   plan.soil_points = 7;
   plan.bound = {"soil wave", 1e-4};
   plan.bounds = {{"soil wave", 1e-4}, {"water speed", 2e-3}};
@@ -21,6 +22,8 @@ TEST(PlanJson, CarriesTheFieldsOfThePlan) {
   EXPECT_EQ(j["cells"], (json{30, 30, 1}));
   EXPECT_EQ(j["soil_points"], 7);
   EXPECT_EQ(j["reasons"][0], "water is modelled");
+  EXPECT_EQ(j["stages"][0],
+            json::parse(R"({"name":"rest","begin":0,"end":2,"does":["Gates closed: valve."]})"));
   EXPECT_EQ(j["bound"]["name"], "soil wave");
   EXPECT_EQ(j["bounds"][1]["seconds"], 2e-3);
 }

@@ -1,0 +1,87 @@
+#include "engine/plan/stage_plan.hpp"
+
+#include <algorithm>
+
+#include "engine/scene/stages.hpp"
+#include "engine/scene/text.hpp"
+
+namespace quicksand {
+namespace {
+
+using Sentences = std::vector<std::string>;
+
+std::string listed(const std::vector<std::string>& names) {
+  std::string words;
+  for (const std::string& name : names) words += (words.empty() ? "" : ", ") + name;
+  return words;
+}
+
+void say_gates(const Scene& scene, const Stage& stage, Sentences& does) {
+  std::vector<std::string> closed;
+  for (const Gate& gate : scene.gates)
+    if (std::count(stage.open_gates.begin(), stage.open_gates.end(), gate.name) == 0)
+      closed.push_back(gate.name);
+  if (!stage.open_gates.empty()) does.push_back("Gates open: " + listed(stage.open_gates) + ".");
+  if (!closed.empty()) does.push_back("Gates closed: " + listed(closed) + ".");
+}
+
+void say_heads(const Scene& scene, std::size_t index, Sentences& does) {
+  for (const Reservoir& reservoir : scene.reservoirs) {
+    const double after = head_after(scene, index, reservoir);
+    const double before = index == 0 ? reservoir.head : head_after(scene, index - 1, reservoir);
+    const double ramp = scene.stages[index].heads_ramp;
+    std::string words = "Reservoir " + reservoir.name + ": level " + text(before) + " m";
+    if (after != before)
+      words += ", then " + text(after) + " m " + (ramp > 0 ? "over " + text(ramp) + " s" : "at once");
+    does.push_back(words + ".");
+  }
+}
+
+void say_loads(const Scene& scene, std::size_t index, Sentences& does) {
+  for (const Load& load : scene.loads) {
+    const bool now = acts(scene, index, load), before = index > 0 && acts(scene, index - 1, load);
+    if (now && !before)
+      does.push_back("Load " + load.name + " begins" +
+                     (load.ramp > 0 ? ", rising over " + text(load.ramp) + " s." : " with its full value."));
+    if (now && before) does.push_back("Load " + load.name + " goes on.");
+    if (!now && before) does.push_back("Load " + load.name + " ends.");
+  }
+}
+
+void say_method(const Scene& scene, const Stage& stage, Sentences& does) {
+  if (stage.damping > 0)
+    does.push_back(
+        "Damping " + text(stage.damping) +
+        ": that share of the out-of-balance force is taken away; what rests is right, the way there "
+        "is not.");
+  if (stage.quasi_static)
+    does.push_back("Quasi-static: inertia, never weight, is scaled so that a wave crosses the soil " +
+                   text(scene.numerics.quasi_static_transits) +
+                   " times within the process; whatever accelerates freely is slower than in nature.");
+  if (stage.until_rest)
+    does.push_back("Ends at rest: when no point is faster than " + text(stage.until_rest->speed) + " m/s" +
+                   (stage.until_rest->at_least > 0
+                        ? ", not before " + text(stage.until_rest->at_least) + " s of it."
+                        : "."));
+}
+
+}  // namespace
+
+std::vector<StagePlan> plan_stages(const Scene& scene) {
+  std::vector<StagePlan> plans;
+  double time = 0;
+  for (std::size_t k = 0; k < scene.stages.size(); ++k) {
+    const Stage& stage = scene.stages[k];
+    StagePlan plan{stage.name, time, time + stage.duration, {}};
+    if (!stage.remove_bodies.empty()) plan.does.push_back("Removes: " + listed(stage.remove_bodies) + ".");
+    say_gates(scene, stage, plan.does);
+    say_heads(scene, k, plan.does);
+    say_loads(scene, k, plan.does);
+    say_method(scene, stage, plan.does);
+    time = plan.end;
+    plans.push_back(std::move(plan));
+  }
+  return plans;
+}
+
+}  // namespace quicksand
