@@ -15,6 +15,20 @@ Vec<D> place(const Vec3& at) {
   return x;
 }
 
+/// A probe's place, moved off the faces of blocks that count as the block's own (a cell holds its lower
+/// faces), by a share of a cell that shows in no figure.
+template <int D>
+Vec<D> off_blocks(const State<D>& s, const Vec<D>& x) {
+  constexpr double kStep = 1e-6;  // of a cell: far above rounding
+  const auto blocked = [&](const Vec<D>& y) {
+    return s.water_walls.blocked(s.grid.index(s.grid.cell_of(y)));
+  };
+  Vec<D> y = x;
+  for (int axes = 1; axes < (1 << D) && blocked(y); ++axes)
+    for (int d = 0; d < D; ++d) y[d] = x[d] - ((axes >> d) & 1) * kStep * s.grid.h;
+  return blocked(y) ? x : y;
+}
+
 /// Upward unit vector, against gravity; y without gravity.
 template <int D>
 Vec<D> up(const Vec<D>& gravity) {
@@ -65,7 +79,7 @@ Quantity quantity(const std::string& name) {
 
 template <int D>
 void append_probe(const State<D>& s, const Probe& probe, std::vector<double>& out) {
-  const Vec<D> x = place<D>(probe.at);
+  const Vec<D> x = off_blocks<D>(s, place<D>(probe.at));
   if (probe.quantity == "pore_pressure") {
     out.push_back(pressure_at<D>(s, x));
   } else if (probe.quantity == "head") {

@@ -226,5 +226,25 @@ TEST(Run, ThreadsNeverChangeTheResult) {
   EXPECT_EQ(one.results.series("max_speed"), two.results.series("max_speed"));
 }
 
+TEST(Run, ProbesOnFacesOfBlocksSeeTheWaterBesideThem) {
+  Scene s = test::plane(0.8, 0.6, 0.05, 1e-3);
+  Wall sill;
+  sill.name = "sill";
+  sill.block = test::box({0.3, 0, 0}, {0.5, 0.2, 0});
+  s.walls = {sill};
+  add_body(s, "left", BodyKind::water, {0, 0, 0}, {0.3, 0.5, 0});
+  add_body(s, "middle", BodyKind::water, {0.3, 0.2, 0}, {0.5, 0.5, 0});
+  add_body(s, "right", BodyKind::water, {0.5, 0, 0}, {0.8, 0.5, 0});
+  s.output.probes = {{"left", {0.3, 0.1, 0}, "pore_pressure"},
+                     {"right", {0.5, 0.1, 0}, "pore_pressure"},
+                     {"top", {0.4, 0.2, 0}, "pore_pressure"},
+                     {"corner", {0.3, 0, 0}, "pore_pressure"}};
+  const auto r = test::record(s);
+  EXPECT_NEAR(r.results.series("probe.left").front(), 9810 * 0.4, 1);
+  EXPECT_NEAR(r.results.series("probe.right").front(), 9810 * 0.4, 1);
+  EXPECT_NEAR(r.results.series("probe.top").front(), 9810 * 0.3, 1);
+  EXPECT_NEAR(r.results.series("probe.corner").front(), 9810 * 0.5, 1);
+}
+
 }  // namespace
 }  // namespace quicksand
