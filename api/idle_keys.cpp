@@ -97,7 +97,7 @@ void check_load(const Place& place, const Load& load) {
     return idle(place, {"plate", "plate_velocity", "plate_force", "rough"}, why);
   }
   needed(place, {"plate"}, why);
-  idle(place, {"traction"}, why);
+  idle(place, {"side", "traction"}, why);
   if (load.plate_force)
     idle(place, {"plate_velocity"}, "with plate_force");
   else

@@ -82,6 +82,7 @@ void read(const Place& place, Load& load) {
   place["name"].read(load.name);
   place["kind"].read(load.kind);
   place["body"].read(load.body);
+  place["side"].read(load.side);
   place["traction"].read(load.traction);
   place["ramp"].read(load.ramp);
   place["plate"].read(load.plate);

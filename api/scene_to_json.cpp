@@ -158,6 +158,7 @@ Json Writer::initial() const {
 Json Writer::load(const Load& l) const {
   Json json{{"name", l.name}, {"kind", word_of(l.kind)}, {"body", l.body}};
   if (l.kind == Load::Kind::traction) {
+    json["side"] = word_of(l.side);
     json["traction"] = vector(l.traction);
   } else {
     json["plate"] = segment(l.plate);

@@ -48,6 +48,14 @@ constexpr Words<InitialStress, 3> words_of(InitialStress) {
 constexpr Words<Load::Kind, 2> words_of(Load::Kind) {
   return {{{Load::Kind::traction, "traction"}, {Load::Kind::plate, "plate"}}};
 }
+constexpr Words<BodySide, 6> words_of(BodySide) {
+  return {{{BodySide::left, "left"},
+           {BodySide::right, "right"},
+           {BodySide::bottom, "bottom"},
+           {BodySide::top, "top"},
+           {BodySide::front, "front"},
+           {BodySide::back, "back"}}};
+}
 constexpr Words<Preset, 3> words_of(Preset) {
   return {{{Preset::draft, "draft"}, {Preset::standard, "standard"}, {Preset::fine, "fine"}}};
 }

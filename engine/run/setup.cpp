@@ -29,26 +29,27 @@ Constants<D> make_constants(const Scene& scene, const Grid<D>& grid) {
   return c;
 }
 
-/// Markers along the top of a body, as close as its points: the highest soil points of each column, moved up
-/// by half their spacing.
+/// Markers along one side of a body, as close as its points: the outermost soil points of each row across the
+/// side, moved out by half their spacing.
 template <int D>
 SurfaceLoad<D> make_load(const Scene& scene, const Load& load, const State<D>& s) {
   const double spacing = s.grid.h / scene.numerics.points_per_cell;
-  std::map<std::array<long, D>, Vec<D>> tops;  // by column of seeding places
+  const int axis = static_cast<int>(load.side) / 2, out = static_cast<int>(load.side) % 2 ? 1 : -1;
+  std::map<std::array<long, D>, Vec<D>> outermost;  // by row of seeding places
   for (std::size_t p = 0; p < s.soil.size(); ++p) {
     if (scene.bodies[s.soil.body[p]].name != load.body) continue;
-    std::array<long, D> column{};
+    std::array<long, D> row{};
     for (int d = 0; d < D; ++d)
-      if (d != kUp) column[d] = static_cast<long>(std::floor((s.soil.x[p][d] - s.grid.origin[d]) / spacing));
-    Vec<D>& top = tops.try_emplace(column, s.soil.x[p]).first->second;
-    if (s.soil.x[p][kUp] > top[kUp]) top = s.soil.x[p];
+      if (d != axis) row[d] = static_cast<long>(std::floor((s.soil.x[p][d] - s.grid.origin[d]) / spacing));
+    Vec<D>& x = outermost.try_emplace(row, s.soil.x[p]).first->second;
+    if (out * (s.soil.x[p][axis] - x[axis]) > 0) x = s.soil.x[p];
   }
-  const double area = D == 2 ? spacing : spacing * spacing;
   SurfaceLoad<D> result;
-  for (auto& [column, top] : tops) {
-    top[kUp] += 0.5 * spacing;
-    result.marker.push_back(top);
-    result.area.push_back(area * s.grid.radius(top));
+  const double area = D == 2 ? spacing : spacing * spacing;
+  for (auto& [row, x] : outermost) {
+    x[axis] += 0.5 * out * spacing;
+    result.marker.push_back(x);
+    result.area.push_back(area * s.grid.radius(x));
   }
   for (int d = 0; d < D; ++d) result.traction[d] = load.traction[d];
   result.ramp = load.ramp;

@@ -98,6 +98,8 @@ void check_loads(const Scene& scene, Faults& faults) {
                         "\"" + load.body + "\" cannot carry a load: name a body of soil that is not fixed"});
     if (load.kind == Load::Kind::traction && load.traction == Vec3{0, 0, 0})
       faults.push_back({at_index("loads", k, "/traction"), "zero: the load has no effect"});
+    if (load.side >= BodySide::front && scene.domain.dimension != Dimension::space)
+      faults.push_back({at_index("loads", k, "/side"), "front and back are sides of bodies in space only"});
     bool ever = false;
     for (std::size_t stage = 0; stage < scene.stages.size(); ++stage) ever = ever || acts(scene, stage, load);
     if (!ever)

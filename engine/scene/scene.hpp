@@ -130,12 +130,16 @@ struct Initial {
   std::array<double, 6> uniform_stress{};  ///< Pa, xx yy zz xy yz zx, effective
 };
 
-/// Pressure-like load on the top surface of a body, or a rigid plate on it that water does not pass.
+/// Side of a body, in the order of Domain::sides.
+enum class BodySide { left, right, bottom, top, front, back };
+
+/// Pressure-like load on one side of a body, or a rigid plate on its top that water does not pass.
 struct Load {
   enum class Kind { traction, plate } kind = Kind::traction;
   std::string name;
   std::string body;
-  Vec3 traction{};                  ///< Pa, per horizontal area
+  BodySide side = BodySide::top;    ///< that the traction acts on
+  Vec3 traction{};                  ///< Pa, per area of the side at the start
   double ramp = 0;                  ///< s, linear rise from the start of the stage that sets it
   Vec3 plate_velocity{};            ///< m/s
   std::optional<Vec3> plate_force;  ///< N (per metre in the plane, per radian about an axis)

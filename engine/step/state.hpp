@@ -100,7 +100,7 @@ struct Constants {
   std::vector<StepLimit> step_limits;  ///< per soil
 };
 
-/// A load on the top of a soil body: massless markers that ride on its surface.
+/// A load on one side of a soil body: massless markers that ride on its surface.
 template <int D>
 struct SurfaceLoad {
   std::vector<Vec<D>> marker;  ///< m

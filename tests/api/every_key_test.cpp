@@ -127,7 +127,7 @@ std::vector<json> documents() {
     "reservoirs": [{"name": "lake", "line": {"from": [2, 1], "to": [2, 2]}, "head": 1.5}],
     "initial": {"pressure": "hydrostatic", "water_table": 1.25, "stress": "k0", "k0": 0.6},
     "loads": [
-      {"name": "cover", "kind": "traction", "body": "clay", "traction": [0, -100], "ramp": 0.5},
+      {"name": "cover", "kind": "traction", "body": "clay", "side": "left", "traction": [0, -100], "ramp": 0.5},
       {"name": "press", "kind": "plate", "body": "clay", "plate": {"from": [0, 1], "to": [0.5, 1]},
        "plate_velocity": [0, -0.125], "rough": true},
       {"name": "weight", "kind": "plate", "body": "clay", "plate": {"from": [1, 1], "to": [1.5, 1]},

@@ -130,6 +130,15 @@ TEST(CheckSpace, GatesMayNotLieOnWalls) {
   EXPECT_EQ(gate({{0.5, 0.3, 0.1}, {0.5, 0.4, 0.5}}), Pointers{"/gates/0/line"});
 }
 
+TEST(CheckSides, FrontAndBackAreSidesInSpaceOnly) {
+  EXPECT_EQ(after([](Scene& s) {
+              Load load;
+              load.name = "push", load.body = "sand", load.side = BodySide::back, load.traction = {0, 0, 1};
+              s.loads = {load};
+            }),
+            Pointers{"/loads/0/side"});
+}
+
 TEST(CheckAxis, TheRadiusIsNotNegative) {
   EXPECT_EQ(after([](Scene& s) {
               s.domain.dimension = Dimension::axisymmetric;

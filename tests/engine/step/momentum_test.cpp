@@ -162,5 +162,27 @@ TEST(MomentumLedger, CountsSurfaceLoads) {
   EXPECT_LT(keeper.ledger().momentum_residual, kClosed);
 }
 
+/// The area of each side of a block counts; about an axis times the radius of that side.
+TEST(MomentumLedger, LoadsActOnTheSideTheyName) {
+  const auto push = [](Dimension dimension, BodySide side, const Vec3& traction) {
+    Scene s = plane(0.6, 0.6, 0.1);
+    s.domain.dimension = dimension;
+    s.gravity = {};
+    add_body(s, "block", BodyKind::soil, {0.2, 0.2, 0}, {0.4, 0.5, 0});
+    Load load;
+    load.name = "push", load.body = "block", load.side = side, load.traction = traction;
+    s.loads = {load};
+    State<2> state = make_state<2>(s);
+    return advance_times(state, 1, 1e-4).impulse_loads;
+  };
+  const auto plane = Dimension::plane_strain, axial = Dimension::axisymmetric;
+  EXPECT_NEAR(push(plane, BodySide::left, {1000, 0, 0})[0], 1000 * 0.3 * 1e-4, 1e-12);
+  EXPECT_NEAR(push(plane, BodySide::right, {0, 500, 0})[1], 500 * 0.3 * 1e-4, 1e-12);
+  EXPECT_NEAR(push(plane, BodySide::bottom, {0, 1000, 0})[1], 1000 * 0.2 * 1e-4, 1e-12);
+  EXPECT_NEAR(push(axial, BodySide::right, {0, 1000, 0})[1], 1000 * 0.3 * 0.4 * 1e-4, 1e-12);
+  EXPECT_NEAR(push(axial, BodySide::left, {0, 1000, 0})[1], 1000 * 0.3 * 0.2 * 1e-4, 1e-12);
+  EXPECT_NEAR(push(axial, BodySide::top, {0, 1000, 0})[1], 1000 * (0.16 - 0.04) / 2 * 1e-4, 1e-12);
+}
+
 }  // namespace
 }  // namespace quicksand
