@@ -123,6 +123,7 @@ TEST(Schema, DefaultsAreAllowedValuesAndThoseOfTheScene) {
   EXPECT_EQ(default_of("permeability", "law"), word_of(Permeability{}.law));
   EXPECT_EQ(default_of("permeability", "exponent"), Permeability{}.exponent);
   EXPECT_EQ(default_of("soil_model", "over_consolidation_ratio"), SoilModel{}.over_consolidation_ratio);
+  EXPECT_EQ(default_of("load", "side"), word_of(Load{}.side));
   EXPECT_EQ(default_of("stage", "heads_ramp"), Stage{}.heads_ramp);
   EXPECT_EQ(default_of("numerics", "quasi_static_transits"), Numerics{}.quasi_static_transits);
   EXPECT_EQ(default_of("water", "density"), Water{}.density);
@@ -158,6 +159,7 @@ TEST(Schema, OffersTheWordsThatAreRead) {
   expect_words<InitialPressure>(d["initial"]["properties"]["pressure"]);
   expect_words<InitialStress>(d["initial"]["properties"]["stress"]);
   expect_words<Load::Kind>(d["load"]["properties"]["kind"]);
+  expect_words<BodySide>(d["load"]["properties"]["side"]);
   expect_words<Preset>(d["numerics"]["properties"]["preset"]);
   expect_words<Kernel>(d["numerics"]["properties"]["kernel"]);
   expect_words<Transfer>(d["numerics"]["properties"]["transfer"]);
