@@ -1,7 +1,8 @@
 #include "api/idle_keys.hpp"
 
-#include <algorithm>
 #include <initializer_list>
+
+#include "engine/scene/stages.hpp"
 
 namespace quicksand {
 namespace {
@@ -121,20 +122,6 @@ void check_numerics(const Place& place, const Scene& scene, bool water) {
 }
 
 }  // namespace
-
-bool has_water(const Scene& scene) {
-  return std::any_of(scene.bodies.begin(), scene.bodies.end(),
-                     [](const Body& b) { return b.kind != BodyKind::soil; });
-}
-
-bool has_soil(const Scene& scene) {
-  return std::any_of(scene.bodies.begin(), scene.bodies.end(),
-                     [](const Body& b) { return b.kind != BodyKind::water; });
-}
-
-bool has_quasi_static(const Scene& scene) {
-  return std::any_of(scene.stages.begin(), scene.stages.end(), [](const Stage& s) { return s.quasi_static; });
-}
 
 void check_choices(const nlohmann::json& document, const Scene& scene, Reading& reading) {
   const Place root(document, reading);

@@ -3,12 +3,6 @@
 
 namespace quicksand {
 
-/// True when some body brings water or soil, or some stage is quasi-static: what decides which other keys
-/// have an effect.
-bool has_water(const Scene& scene);
-bool has_soil(const Scene& scene);
-bool has_quasi_static(const Scene& scene);
-
 /// Adds a fault for every key that is given but, by a choice made elsewhere in the case, has no effect, and
 /// for every key that such a choice makes necessary but that is absent. A scene's values cannot show this: it
 /// takes the document, which knows what was given.

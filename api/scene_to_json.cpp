@@ -1,7 +1,7 @@
 #include "api/scene_to_json.hpp"
 
-#include "api/idle_keys.hpp"
 #include "api/words.hpp"
+#include "engine/scene/stages.hpp"
 
 namespace quicksand {
 namespace {

@@ -9,6 +9,7 @@
 #include "engine/plan/step_bounds.hpp"
 #include "engine/points/seeding.hpp"
 #include "engine/scene/region.hpp"
+#include "engine/scene/stages.hpp"
 #include "engine/step/state.hpp"
 
 namespace quicksand {
@@ -115,7 +116,7 @@ Plan make_plan(const Scene& scene) {
   else
     measure<3>(scene, plan);
   plan.has_soil = plan.soil_points > 0;
-  plan.has_water = plan.water_points > 0;
+  plan.has_water = has_water(scene);
   plan.has_viscosity = plan.has_water && scene.water.viscosity > 0;
   explain(scene, plan);
   plan.stages = plan_stages(scene);

@@ -107,29 +107,23 @@ void check_loads(const Scene& scene, Faults& faults) {
   }
 }
 
-bool any_body(const Scene& scene, BodyKind without) {
-  return std::any_of(scene.bodies.begin(), scene.bodies.end(),
-                     [&](const Body& b) { return b.kind != without; });
-}
-
 /// Whether something in the scene can ever show the quantity of a probe or field.
 std::string missing_for(const Scene& scene, const std::string& quantity) {
-  static const std::set<std::string> of_water{"pore_pressure", "head", "water_velocity"};
+  static const std::set<std::string> of_water{"pore_pressure", "head", "water_velocity", "flow"};
   static const std::set<std::string> of_soil{"soil_velocity", "porosity", "effective_stress",
                                              "plastic_strain"};
-  if (of_water.contains(quantity) && !any_body(scene, BodyKind::soil)) return "no body holds water";
-  if (of_soil.contains(quantity) && !any_body(scene, BodyKind::water)) return "no body is of soil";
+  if (of_water.contains(quantity) && !has_water(scene)) return "there is no water";
+  if (of_soil.contains(quantity) && !has_soil(scene)) return "there is no soil";
   if (quantity == "head" && scene.gravity == Vec3{0, 0, 0}) return "head is not defined without gravity";
   return {};
 }
 
-void check_probes(const Scene& scene, Faults& faults) {
-  for (std::size_t k = 0; k < scene.output.probes.size(); ++k) {
-    const Probe& probe = scene.output.probes[k];
-    if (const std::string why = missing_for(scene, probe.quantity); !why.empty())
-      faults.push_back(
-          {at_index("output/probes", k, "/quantity"), probe.quantity + " has nothing to show: " + why});
-  }
+/// Probes or sections.
+template <typename Items>
+void check_quantities(const Scene& scene, const Items& items, const char* list, Faults& faults) {
+  for (std::size_t k = 0; k < items.size(); ++k)
+    if (const std::string why = missing_for(scene, items[k].quantity); !why.empty())
+      faults.push_back({at_index(list, k, "/quantity"), items[k].quantity + " has nothing to show: " + why});
 }
 
 void check_heave(const Scene& scene, const HeaveWatch& watch, Faults& faults) {
@@ -190,7 +184,8 @@ void check_output(const Scene& scene, Faults& faults) {
     if (const std::string why = missing_for(scene, output.fields[k]); !why.empty())
       faults.push_back({place, output.fields[k] + " has nothing to show: " + why});
   }
-  check_probes(scene, faults);
+  check_quantities(scene, output.probes, "output/probes", faults);
+  check_quantities(scene, output.sections, "output/sections", faults);
   if (output.heave) check_heave(scene, *output.heave, faults);
 }
 

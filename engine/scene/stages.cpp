@@ -11,6 +11,20 @@ bool names(const std::vector<std::string>& list, const std::string& name) {
 
 }  // namespace
 
+bool has_water(const Scene& scene) {
+  return !scene.reservoirs.empty() || std::any_of(scene.bodies.begin(), scene.bodies.end(),
+                                                  [](const Body& b) { return b.kind != BodyKind::soil; });
+}
+
+bool has_soil(const Scene& scene) {
+  return std::any_of(scene.bodies.begin(), scene.bodies.end(),
+                     [](const Body& b) { return b.kind != BodyKind::water; });
+}
+
+bool has_quasi_static(const Scene& scene) {
+  return std::any_of(scene.stages.begin(), scene.stages.end(), [](const Stage& s) { return s.quasi_static; });
+}
+
 bool present(const Scene& scene, std::size_t stage, const std::string& body) {
   for (std::size_t k = 0; k <= stage; ++k)
     if (names(scene.stages[k].remove_bodies, body)) return false;

@@ -1,11 +1,16 @@
 #pragma once
-// What holds in a stage, by what it and the stages before it say.
+// What a scene holds, and what holds in a stage by what it and the stages before it say.
 
 #include <string>
 
 #include "engine/scene/scene.hpp"
 
 namespace quicksand {
+
+/// Whether water comes with a body or from a reservoir.
+bool has_water(const Scene& scene);
+bool has_soil(const Scene& scene);
+bool has_quasi_static(const Scene& scene);
 
 /// Whether the body is still there in a stage.
 bool present(const Scene& scene, std::size_t stage, const std::string& body);

@@ -39,6 +39,20 @@ TEST(CheckReservoir, HasOneLevelInEachPlaceAndNeedsWeight) {
             Pointers{"/reservoirs/0/head"});
 }
 
+TEST(CheckReservoir, BringsWaterToADryScene) {
+  const auto dry = [](const std::function<void(Scene&)>& change) {
+    return after([&](Scene& s) {
+      s.bodies.pop_back();
+      s.bodies[0].kind = BodyKind::soil;
+      s.output.probes = {{"p", {0.5, 0.1, 0}, "head"}};
+      s.output.sections = {{"cut", {{0.5, 0, 0}, {0.5, 1, 0}}, "flow"}};
+      change(s);
+    });
+  };
+  EXPECT_EQ(dry([](Scene&) {}), (Pointers{"/output/probes/0/quantity", "/output/sections/0/quantity"}));
+  EXPECT_EQ(dry([](Scene& s) { s.reservoirs = {{"lake", {{0, 0, 0}, {0, 0.6, 0}}, 0.5}}; }), Pointers{});
+}
+
 Load plate_on_sand(double x0, double x1, double y = 0.3) {
   Load load;
   load.kind = Load::Kind::plate;
