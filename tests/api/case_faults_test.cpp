@@ -305,14 +305,7 @@ const Mutation of_sense[] = {
          R"({"law":"modified_cam_clay","poisson_ratio":0.2,"compression_slope":0.04,"swelling_slope":0.2,)"
          R"("critical_state_slope":1})"),
      {"/materials/soils/sand/model/swelling_slope"}},
-    {"op":"add","path":"/materials/soils/sand/model/residual_cohesion","value":200},
-         {"op":"add","path":"/materials/soils/sand/model/softening_strain","value":0.1}])",
-     {"/materials/soils/sand/model/residual_cohesion"}},
-    {
-  "/materials/soils/sand/model/tension_cutoff"
-}
-}
-, {"RestAfterTheEnd", ADD("/stages/0/until_rest/at_least", "0.5"), {"/stages/0/until_rest/at_least"}},
+    {"RestAfterTheEnd", ADD("/stages/0/until_rest/at_least", "0.5"), {"/stages/0/until_rest/at_least"}},
     {"TooManyFrames", ADD("/output/frame_interval", "1e-5"), {"/output/frame_interval"}},
     {"TooManySamples", ADD("/output/series_interval", "1e-7"), {"/output/series_interval"}},
     {"HeadWithoutGravity",
