@@ -13,6 +13,13 @@ struct Spline {
     w = {0.5 * (0.5 - t) * (0.5 - t), 0.75 - t * t, 0.5 * (0.5 + t) * (0.5 + t)};
     dw = {t - 0.5, -2 * t, t + 0.5};
   }
+  /// Hat function on the same three nodes.
+  static Spline hat(double t) {
+    Spline s;
+    s.w = {std::max(0.0, -t), 1 - std::abs(t), std::max(0.0, t)};
+    s.dw = {t < 0 ? -1.0 : 0.0, t < 0 ? 1.0 : -1.0, t < 0 ? 0.0 : 1.0};
+    return s;
+  }
 };
 
 /// One-dimensional factors of all weights of a point; computed once per pass.
@@ -34,6 +41,18 @@ struct PointKernel {
     }
   }
 };
+
+/// The kernel with hats across each component's own axis. The derivative of a quadratic spline is a
+/// difference of hats, so that what it interpolates has everywhere the divergence that the cells around have:
+/// points carried by it keep their volume.
+template <int D>
+PointKernel<D> volume_keeping(const PointKernel<D>& kernel, const Grid<D>& grid, const Vec<D>& x) {
+  PointKernel<D> k = kernel;
+  const Cell<D> c = grid.cell_of(x);
+  for (int d = 0; d < D; ++d)
+    k.center[d] = Spline::hat(std::clamp((x[d] - grid.origin[d]) * grid.inverse_h - c[d], 0.0, 1.0) - 0.5);
+  return k;
+}
 
 /// Calls f(face, weight, sign, gradient) for the 3^D faces of component d around a point. `gradient` is of
 /// the weight with respect to the point's position (1/m); `sign` goes with momenta, forces and velocities.

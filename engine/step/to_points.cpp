@@ -81,6 +81,23 @@ bool falls_freely(const State<D>& s, const PointKernel<D>& kernel) {
   return depth < -kFreeHeight;
 }
 
+/// Way of the water at x in dt by the midpoint rule; Euler's way leads out of every bend.
+template <int D>
+Vec<D> path(const State<D>& s, const PointKernel<D>& kernel, const Vec<D>& x, double dt) {
+  const auto way = [&](const PointKernel<D>& k, const Vec<D>& at, double seconds) {
+    const PointKernel<D> mover = volume_keeping<D>(k, s.grid, at);
+    Vec<D> u{};
+    for (int d = 0; d < D; ++d)
+      for_faces(s.grid, s.water_walls, mover, d, [&](int face, double w, double sign, const Vec<D>&) {
+        u[d] += seconds * sign * w * s.flow[d][face].water;
+      });
+    return u;
+  };
+  Vec<D> middle = x;
+  move<D>(s.grid, s.water_walls, kernel.home, middle, way(kernel, x, 0.5 * dt));
+  return way(PointKernel<D>(s.grid, middle), middle, dt);
+}
+
 template <int D>
 void water_from_faces(State<D>& s, std::uint32_t p, double dt, double pic, Totals<D>& totals) {
   WaterPoints<D>& water = s.water;
@@ -104,6 +121,7 @@ void water_from_faces(State<D>& s, std::uint32_t p, double dt, double pic, Total
     totals.momentum[d] += water.mass[p] * v;
     speed2 += v * v;
   }
+  if (!falls) step = path<D>(s, kernel, water.x[p], dt);
   totals.interventions.clipped_points += move<D>(s.grid, s.water_walls, kernel.home, water.x[p], step);
   totals.mass += water.mass[p];
   totals.kinetic += 0.5 * water.mass[p] * speed2;
