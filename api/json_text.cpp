@@ -75,6 +75,8 @@ class StrictBuilder final : public nlohmann::json_sax<json> {
     const auto start = what.find(": ");
     if (start != std::string::npos) what.erase(0, start + 2);
     if (what.rfind("syntax error while parsing ", 0) == 0) what.erase(0, 13);
+    for (const char* close : {"expected '}'", "expected ']'"})  // it expects no less a comma
+      if (what.ends_with(close)) what.insert(what.size() - 3, "',' or ");
     for (char& c : what)
       if (static_cast<unsigned char>(c) < 0x20 || static_cast<unsigned char>(c) >= 0x7f) c = '?';
     constexpr std::size_t longest = 200;

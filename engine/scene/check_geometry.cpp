@@ -141,8 +141,7 @@ void check_lines(const Scene& scene, Faults& faults) {
   const Patches walls = check_walls(scene, faults);
   check_gates(scene, walls, faults);
   check_reservoirs(scene, faults);
-  for (std::size_t k = 0; k < scene.output.sections.size(); ++k)
-    check_patch(scene, scene.output.sections[k].line, at_index("output/sections", k, "/line"), faults);
+  check_sections(scene, faults);
   check_plates(scene, faults);
   check_probe_places(scene, faults);
 }

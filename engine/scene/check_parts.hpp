@@ -27,6 +27,7 @@ bool check_grid(const Scene& scene, Faults& faults);
 /// Walls, gates, reservoirs, sections, plates and probes against the grid and each other. Needs a sound grid.
 void check_lines(const Scene& scene, Faults& faults);
 void check_reservoirs(const Scene& scene, Faults& faults);
+void check_sections(const Scene& scene, Faults& faults);
 void check_plates(const Scene& scene, Faults& faults);
 void check_probe_places(const Scene& scene, Faults& faults);
 /// Regions of bodies against the domain, the blocks and each other. Needs a sound grid.

@@ -21,8 +21,16 @@ const Wall* block_beside(const Scene& scene, const GridPatch& patch, int side, b
   return found == scene.walls.end() ? nullptr : &*found;
 }
 
+/// Whether the patch is a part of the axis, which has no area.
+bool on_axis(const Scene& scene, const GridPatch& patch) {
+  return scene.domain.dimension == Dimension::axisymmetric && scene.domain.min[0] == 0 && patch.normal == 0 &&
+         patch.position() == 0;
+}
+
 /// A reservoir's stretch borders the outside: the domain's edge, or a block's face.
 void check_stretch(const Scene& scene, const GridPatch& patch, const std::string& pointer, Faults& faults) {
+  if (on_axis(scene, patch))
+    return faults.push_back({pointer, "lies on the axis: there is no outside behind it"});
   const bool low_solid = patch.position() == 0 || block_beside(scene, patch, 0, false);
   const bool high_solid =
       patch.position() == cells_along(scene, patch.normal) || block_beside(scene, patch, 1, false);
@@ -106,6 +114,15 @@ void check_reservoirs(const Scene& scene, Faults& faults) {
   if (scene.gravity == Vec3{0, 0, 0})
     for (std::size_t k = 0; k < scene.reservoirs.size(); ++k)
       faults.push_back({at_index("reservoirs", k, "/head"), "a level means nothing without gravity"});
+}
+
+void check_sections(const Scene& scene, Faults& faults) {
+  for (std::size_t k = 0; k < scene.output.sections.size(); ++k) {
+    const std::string pointer = at_index("output/sections", k, "/line");
+    const auto patch = check_patch(scene, scene.output.sections[k].line, pointer, faults);
+    if (patch && on_axis(scene, *patch))
+      faults.push_back({pointer, "lies on the axis: nothing flows through it"});
+  }
 }
 
 void check_plates(const Scene& scene, Faults& faults) {

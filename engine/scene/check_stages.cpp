@@ -133,6 +133,8 @@ void check_heave(const Scene& scene, const HeaveWatch& watch, Faults& faults) {
   else if (body->kind == BodyKind::water || body->fixed)
     faults.push_back(
         {"/output/heave/body", "\"" + watch.body + "\" cannot heave: name a body of soil that is not fixed"});
+  else if (!scene.stages.empty() && !present(scene, 0, watch.body))
+    faults.push_back({"/output/heave/body", "\"" + watch.body + "\" is removed by the first stage"});
   const auto& probes = scene.output.probes;
   std::vector<std::string> of_head;
   for (const Probe& probe : probes)

@@ -15,6 +15,13 @@ TEST(JsonText, SyntaxFaultHasLineColumnAndPlace) {
   EXPECT_NE(json.faults[0].detail.find("line 3, column 16"), std::string::npos) << json.faults[0].detail;
 }
 
+TEST(JsonText, AMissingCommaIsSaid) {
+  const auto said = [](const char* text) { return read_json(text).faults.at(0).detail; };
+  EXPECT_NE(said("{\"a\": 1 \"b\": 2}").find("expected ',' or '}'"), std::string::npos)
+      << said("{\"a\": 1 \"b\": 2}");
+  EXPECT_NE(said("[1 2]").find("expected ',' or ']'"), std::string::npos) << said("[1 2]");
+}
+
 TEST(JsonText, RefusesWhatIsNotOneJsonText) {
   for (const char* text : {"", " ", "{", "[1,]", "{\"a\":1} x", "nul", "{'a':1}", "{\"a\" 1}", "[1 2]",
                            "// c\n{}", "1e400", "NaN", "\"\xff\"", "[\"\\u0000\"]", "{\"\\u0000\":1}"}) {

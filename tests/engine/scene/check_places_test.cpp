@@ -39,6 +39,16 @@ TEST(CheckReservoir, HasOneLevelInEachPlaceAndNeedsWeight) {
             Pointers{"/reservoirs/0/head"});
 }
 
+TEST(CheckReservoir, TheAxisIsNoBoundary) {
+  EXPECT_EQ(
+      after([](Scene& s) {
+        s.domain.dimension = Dimension::axisymmetric;
+        s.reservoirs = {{"well", {{0, 0, 0}, {0, 0.4, 0}}, 0.8}, {"rim", {{1, 0, 0}, {1, 0.4, 0}}, 0.8}};
+        s.output.sections = {{"axis", {{0, 0, 0}, {0, 0.4, 0}}, "flow"}};
+      }),
+      (Pointers{"/output/sections/0/line", "/reservoirs/0/line"}));
+}
+
 TEST(CheckReservoir, BringsWaterToADryScene) {
   const auto dry = [](const std::function<void(Scene&)>& change) {
     return after([&](Scene& s) {
