@@ -177,5 +177,15 @@ TEST(OpenApi, IsCompiledInWhole) {
   EXPECT_EQ(text.back(), '\n');
 }
 
+TEST(OpenApi, ItsExampleIsASoundCase) {
+  const std::string& text = openapi_document();
+  const std::string key = "          example: ";
+  const std::size_t at = text.find(key);
+  ASSERT_NE(at, std::string::npos);
+  const std::size_t begin = at + key.size();
+  const ParsedCase parsed = parse_case(text.substr(begin, text.find('\n', begin) - begin));
+  EXPECT_TRUE(parsed.scene.has_value());
+}
+
 }  // namespace
 }  // namespace quicksand
