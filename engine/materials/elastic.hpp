@@ -1,4 +1,6 @@
 #pragma once
+#include "engine/materials/tensor.hpp"
+
 namespace quicksand {
 
 /// Isotropic linear elasticity.
@@ -10,6 +12,21 @@ struct Elastic {
   }
   double lame() const { return bulk - 2 * shear / 3; }         ///< Pa, λ
   double constrained() const { return bulk + 4 * shear / 3; }  ///< Pa, Ec
+  double poisson() const { return (3 * bulk - 2 * shear) / (2 * (3 * bulk + shear)); }
+
+  /// `stress` after a strain increment, without yielding.
+  template <std::size_t N>
+  std::array<double, N> stretched(std::array<double, N> stress, const std::array<double, N>& strain) const {
+    const double volume = lame() * trace(strain);
+    for (std::size_t i = 0; i < N; ++i) stress[i] += 2 * shear * strain[i] + (i < 3 ? volume : 0);
+    return stress;
+  }
+  /// J/m³ stored by a stress.
+  template <std::size_t N>
+  double energy(const std::array<double, N>& stress) const {
+    const double t = trace(stress);
+    return 0.25 * contracted(deviator(stress)) / shear + t * t / (18 * bulk);
+  }
 };
 
 }  // namespace quicksand

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+
+#include "engine/scene/check_parts.hpp"
 
 namespace quicksand {
 namespace {
@@ -62,7 +65,7 @@ MohrCoulombReturn return_to_edge(const MohrCoulomb& law, const Elastic& e, const
 
 MohrCoulombReturn return_to_apex(const MohrCoulomb& law, const Elastic& e,
                                  const std::array<double, 3>& trial) {
-  const double apex = law.cohesion * law.cos_phi / law.sin_phi;
+  const double apex = law.apex();
   MohrCoulombReturn r{{apex, apex, apex}, {}, YieldRegion::apex};
   const double mean = (trial[0] + trial[1] + trial[2]) / 3;
   for (int a = 0; a < 3; ++a)
@@ -70,14 +73,9 @@ MohrCoulombReturn return_to_apex(const MohrCoulomb& law, const Elastic& e,
   return r;
 }
 
-}  // namespace
-
-MohrCoulombReturn return_map(const MohrCoulomb& law, const Elastic& e, const std::array<double, 3>& trial) {
+MohrCoulombReturn return_to_pyramid(const MohrCoulomb& law, const Elastic& e,
+                                    const std::array<double, 3>& trial, double f, double scale) {
   const Face main{0, 2};
-  const double scale = std::abs(trial[0]) + std::abs(trial[2]) + law.cohesion;
-  const double f = yield(law, trial, main);
-  if (f <= 1e-14 * scale) return {trial, {}, YieldRegion::elastic};
-
   const double tolerance = 1e-12 * scale;
   MohrCoulombReturn r =
       relax(law, e, trial, main, f / stiffness(law, e, main, main), main, 0, YieldRegion::face);
@@ -88,11 +86,82 @@ MohrCoulombReturn return_map(const MohrCoulomb& law, const Elastic& e, const std
     else
       r = return_to_edge(law, e, trial, Face{0, 1}, YieldRegion::edge_extension);
   }
-  if (law.sin_phi > 0) {
-    const double apex = law.cohesion * law.cos_phi / law.sin_phi;
-    if (!sorted(r.stress, tolerance) || r.stress[2] > apex + tolerance) return return_to_apex(law, e, trial);
-  }
+  if (law.sin_phi > 0 && (!sorted(r.stress, tolerance) || r.stress[2] > law.apex() + tolerance))
+    return return_to_apex(law, e, trial);
   return r;
 }
+
+}  // namespace
+
+MohrCoulombReturn return_map(const MohrCoulomb& law, const Elastic& e, const std::array<double, 3>& trial) {
+  const double scale = std::abs(trial[0]) + std::abs(trial[2]) + law.cohesion;
+  const double f = yield(law, trial, Face{0, 2});
+  const MohrCoulombReturn r = f <= 1e-14 * scale ? MohrCoulombReturn{trial, {}, YieldRegion::elastic}
+                                                 : return_to_pyramid(law, e, trial, f, scale);
+  // Where shear alone leaves no stress above the cut-off, its planes take no part.
+  if (law.tension >= law.apex() || r.stress[0] <= law.tension) return r;
+  return return_to_cutoff(law, e, trial);
+}
+
+MohrCoulombLaw MohrCoulombLaw::from(const SoilModel& m) {
+  constexpr double kRadians = std::numbers::pi / 180;
+  MohrCoulombLaw law;
+  law.elastic = Elastic::from_young(m.young_modulus, m.poisson_ratio);
+  law.peak.sin_phi = std::sin(m.friction_angle * kRadians);
+  law.peak.cos_phi = std::cos(m.friction_angle * kRadians);
+  law.peak.sin_psi = std::sin(m.dilation_angle * kRadians);
+  law.peak.cohesion = m.cohesion;
+  if (m.tension_cutoff) law.peak.tension = *m.tension_cutoff;
+  if (m.residual_cohesion) {
+    law.residual_cohesion = *m.residual_cohesion;
+    law.softening_strain = m.softening_strain;
+  }
+  return law;
+}
+
+void MohrCoulombLaw::check(const SoilModel& m, ModelFaults& faults) {
+  if (m.dilation_angle > m.friction_angle)
+    faults.push_back({"dilation_angle",
+                      text(m.dilation_angle) + "° is above the friction angle " + text(m.friction_angle) +
+                          "°: the soil would create energy; give at most the friction angle"});
+  if (m.friction_angle == 0 && m.cohesion == 0)
+    faults.push_back(
+        {"friction_angle", "no friction and no cohesion: soil without strength; give one of them"});
+  const double apex = from(m).peak.apex();
+  if (m.tension_cutoff && *m.tension_cutoff > apex)
+    faults.push_back({"tension_cutoff", text(*m.tension_cutoff) +
+                                            " Pa has no effect: friction and cohesion " +
+                                            "allow at most cohesion / tan(friction_angle) = " + text(apex) +
+                                            " Pa; give less or remove it"});
+  if (m.residual_cohesion && *m.residual_cohesion >= m.cohesion)
+    faults.push_back({"residual_cohesion", text(*m.residual_cohesion) + " Pa is not below the cohesion " +
+                                               text(m.cohesion) + " Pa: nothing would soften; remove it"});
+  if (m.residual_cohesion && !(m.softening_strain > 0))
+    faults.push_back({"softening_strain",
+                      "is needed with residual_cohesion: the plastic shear strain at which it is reached"});
+  if (!m.residual_cohesion && m.softening_strain > 0)
+    faults.push_back({"softening_strain", "has no effect without residual_cohesion: remove it"});
+}
+
+MohrCoulomb MohrCoulombLaw::strength(double plastic_strain) const {
+  MohrCoulomb now = peak;
+  if (softening_strain > 0)
+    now.cohesion += (residual_cohesion - peak.cohesion) * std::min(1.0, plastic_strain / softening_strain);
+  return now;
+}
+
+template <int D>
+int MohrCoulombLaw::update(SoilState<D>& state, const Strain<D>& strain, double /*porosity*/) const {
+  state.stress = elastic.stretched(state.stress, strain);
+  const Principal trial = principal<D>(state.stress);
+  const MohrCoulombReturn r = return_map(strength(state.plastic_strain), elastic, trial.value);
+  if (r.region == YieldRegion::elastic) return 0;
+  state.stress = with_values<D>(trial, r.stress);
+  state.plastic_strain += std::sqrt(2.0 / 3.0 * contracted(deviator(r.plastic_strain)));
+  return 0;
+}
+
+template int MohrCoulombLaw::update<2>(SoilState<2>&, const Strain<2>&, double) const;
+template int MohrCoulombLaw::update<3>(SoilState<3>&, const Strain<3>&, double) const;
 
 }  // namespace quicksand

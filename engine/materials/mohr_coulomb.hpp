@@ -1,18 +1,26 @@
 #pragma once
 #include <array>
+#include <limits>
 
 #include "engine/materials/elastic.hpp"
+#include "engine/materials/law.hpp"
 
 namespace quicksand {
 
 /// Mohr–Coulomb strength with non-associated flow, linear elastic inside.
 struct MohrCoulomb {
-  double sin_phi = 0, cos_phi = 1;  ///< friction angle
-  double sin_psi = 0;               ///< dilation angle
-  double cohesion = 0;              ///< Pa
+  double sin_phi = 0, cos_phi = 1;                           ///< friction angle
+  double sin_psi = 0;                                        ///< dilation angle
+  double cohesion = 0;                                       ///< Pa
+  double tension = std::numeric_limits<double>::infinity();  ///< Pa, largest principal stress
+
+  /// Tension at the pyramid's tip, c cot φ; infinite without friction.
+  double apex() const {
+    return sin_phi > 0 ? cohesion * cos_phi / sin_phi : std::numeric_limits<double>::infinity();
+  }
 };
 
-enum class YieldRegion { elastic, face, edge_extension, edge_compression, apex };
+enum class YieldRegion { elastic, face, edge_extension, edge_compression, apex, tension };
 
 /// Principal stresses (tension positive, sorted: s[0] ≥ s[1] ≥ s[2]) after the return.
 struct MohrCoulombReturn {
@@ -22,10 +30,48 @@ struct MohrCoulombReturn {
 };
 
 /// Implicit return in principal stress space: onto the face σ1–σ3, else onto the edge where two faces
-/// meet, else to the apex c·cot φ. With linear faces each return is exact in one step.
+/// meet, else to the apex c·cot φ. With linear faces each return is exact in one step. Planes of largest
+/// tension, with associated flow, cut the pyramid below its apex; see tension_cutoff.cpp.
 /// `trial` must be sorted. A stress of exactly zero with c = 0 is admissible and stays.
 /// Source: E. A. de Souza Neto, D. Perić, D. R. J. Owen, Computational Methods for Plasticity, ch. 8.
 MohrCoulombReturn return_map(const MohrCoulomb& law, const Elastic& elastic,
                              const std::array<double, 3>& trial);
+/// The return where the tension cut-off is active.
+MohrCoulombReturn return_to_cutoff(const MohrCoulomb& law, const Elastic& elastic,
+                                   const std::array<double, 3>& trial);
+
+/// Linear elastic, perfectly plastic or with cohesion that softens: linearly from `cohesion` to
+/// `residual_cohesion` while the accumulated plastic shear strain Σ √(2/3 e:e) grows to `softening_strain`.
+/// A step takes the cohesion at its start. Softening concentrates strain in bands one cell wide, so that what
+/// a scene does after its peak depends on the cell size.
+struct MohrCoulombLaw {
+  static constexpr bool kKeepsPreconsolidation = false, kVariesStiffness = false, kNeedsStress = false;
+  Elastic elastic;
+  MohrCoulomb peak;
+  double residual_cohesion = 0;  ///< Pa
+  double softening_strain = 0;   ///< –; 0: cohesion stays
+
+  static MohrCoulombLaw from(const SoilModel& model);
+  static void check(const SoilModel& model, ModelFaults& faults);
+
+  MohrCoulomb strength(double plastic_strain) const;
+
+  template <int D>
+  double constrained_modulus(const SoilState<D>&, double /*porosity*/) const {
+    return elastic.constrained();
+  }
+  /// J. Jáky, 1 − sin φ.
+  double natural_k0() const { return 1 - peak.sin_phi; }
+  template <int D>
+  int begin(SoilState<D>&) const {
+    return 0;
+  }
+  template <int D>
+  int update(SoilState<D>& state, const Strain<D>& strain, double porosity) const;
+  template <int D>
+  double energy(const SoilState<D>& state, double /*porosity*/) const {
+    return elastic.energy(state.stress);
+  }
+};
 
 }  // namespace quicksand

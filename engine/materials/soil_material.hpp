@@ -1,43 +1,70 @@
 #pragma once
 // One soil as the step uses it, and its stress update.
 
+#include <optional>
+#include <variant>
+
+#include "engine/materials/cam_clay.hpp"
 #include "engine/materials/drag.hpp"
+#include "engine/materials/linear_elastic.hpp"
 #include "engine/materials/mohr_coulomb.hpp"
-#include "engine/points/points.hpp"
 
 namespace quicksand {
 
+/// The laws, in the order of the choices of SoilLaw.
+using Law = std::variant<LinearElasticLaw, MohrCoulombLaw, CamClayLaw>;
+
 struct SoilMaterial {
-  SoilLaw law = SoilLaw::linear_elastic;
-  Elastic elastic;
-  MohrCoulomb mohr_coulomb;
+  Law law;
   Drag drag;
   double grain_density = 2650;  ///< kg/m³
   double porosity = 0.4;        ///< –, initial
   double max_porosity = 1;      ///< –, grains do not touch above it
+  std::optional<double> k0{};   ///< –, horizontal over vertical effective stress at the start, if given
 
   static SoilMaterial from(const Soil& soil, const Water& water);
+
+  /// Elastic constrained modulus of a point, Pa: what its waves travel with.
+  template <int D>
+  double constrained_modulus(const SoilState<D>& state, double n) const {
+    return std::visit([&](const auto& l) { return l.template constrained_modulus<D>(state, n); }, law);
+  }
+  /// Horizontal over vertical effective stress where the scene gives none.
+  double natural_k0() const {
+    return std::visit([](const auto& l) { return l.natural_k0(); }, law);
+  }
+  bool varies_stiffness() const {
+    return std::visit([](const auto& l) { return l.kVariesStiffness; }, law);
+  }
+  bool keeps_preconsolidation() const {
+    return std::visit([](const auto& l) { return l.kKeepsPreconsolidation; }, law);
+  }
+  /// Elastic energy per bulk volume, J/m³.
+  template <int D>
+  double energy(const SoilState<D>& state, double n) const {
+    return std::visit([&](const auto& l) { return l.template energy<D>(state, n); }, law);
+  }
+  /// Makes the history that belongs to an initial stress; returns how many values it held at a bound.
+  template <int D>
+  int begin(SoilState<D>& state) const {
+    return std::visit([&](const auto& l) { return l.template begin<D>(state); }, law);
+  }
 };
 
-/// Velocity gradient, ∂v_i/∂x_j in 1/s.
-template <int D>
-using Gradient = std::array<Vec<D>, D>;
+/// Parameters of a model that contradict each other, as its law says, and whether the law has no stiffness
+/// without initial stress.
+ModelFaults check_model(const SoilModel& model);
+bool needs_initial_stress(const SoilModel& model);
 
-/// Effective stress after a step of dt seconds with velocity gradient L (Jaumann rate), and the increment
-/// of equivalent plastic shear strain √(2/3 e:e). In the plane the out-of-plane strain is zero; about an
-/// axis it grows at the rate `hoop` = v_r/r, 1/s.
+/// State after a step of dt seconds with velocity gradient L (Jaumann rate), from porosity `n` at its start.
+/// In the plane the out-of-plane strain is zero; about an axis it grows at the rate `hoop` = v_r/r, 1/s.
+/// Returns how many values were held at a bound other than by the law's equations.
 template <int D>
-struct StressUpdate {
-  Stress<D> stress;
-  double plastic_strain;
-};
-template <int D>
-StressUpdate<D> update_stress(const SoilMaterial& soil, const Stress<D>& stress, const Gradient<D>& l,
-                              double dt, double hoop = 0);
-
-extern template StressUpdate<2> update_stress<2>(const SoilMaterial&, const Stress<2>&, const Gradient<2>&,
-                                                 double, double);
-extern template StressUpdate<3> update_stress<3>(const SoilMaterial&, const Stress<3>&, const Gradient<3>&,
-                                                 double, double);
+int update_state(const SoilMaterial& soil, SoilState<D>& state, double n, const Gradient<D>& l, double dt,
+                 double hoop = 0) {
+  state.stress = rotated<D>(state.stress, l, dt);
+  const Strain<D> strain = strain_increment<D>(l, dt, hoop);
+  return std::visit([&](const auto& law) { return law.template update<D>(state, strain, n); }, soil.law);
+}
 
 }  // namespace quicksand

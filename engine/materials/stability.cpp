@@ -70,22 +70,44 @@ double fast_wave_step_limit(const SaturatedSoil& soil, double h) {
   return h / std::sqrt(0.5 * (a + b) + std::hypot(0.5 * (a - b), coupling));
 }
 
+namespace {
+
+/// Pa. Where stiffness varies, tables stand at this times 4^k; softer soil counts as this.
+constexpr double kSoftest = 1e4;
+constexpr int kStiffnesses = 9;  // up to 655 MPa; beyond, the bound falls as 1/modulus, no slower than it may
+
+}  // namespace
+
 StepLimit::StepLimit(const SoilMaterial& soil, double water_density, double water_compliance, double h) {
-  for (int i = 0; i < kEntries; ++i) {
-    const double n = (i + 0.5) / kEntries;
-    const SaturatedSoil s{soil.elastic.constrained(), soil.grain_density, water_density, water_compliance, n,
-                          soil.drag.resistance(n)};
-    dry_[i] = dry_step_limit(s, h);
-    saturated_[i] = std::min(coupled_step_limit(s, h), surface_step_limit(s, h));
-    fast_wave_[i] =
-        water_compliance > 0 ? fast_wave_step_limit(s, h) : std::numeric_limits<double>::infinity();
+  bounds_.resize(soil.varies_stiffness() ? kStiffnesses : 1);
+  double modulus = soil.varies_stiffness() ? kSoftest : soil.constrained_modulus<2>({}, soil.porosity);
+  for (Bounds& b : bounds_) {
+    for (int i = 0; i < kEntries; ++i) {
+      const double n = (i + 0.5) / kEntries;
+      const SaturatedSoil s{modulus, soil.grain_density,     water_density, water_compliance,
+                            n,       soil.drag.resistance(n)};
+      b.dry[i] = dry_step_limit(s, h);
+      b.saturated[i] = std::min(coupled_step_limit(s, h), surface_step_limit(s, h));
+      b.fast_wave[i] =
+          water_compliance > 0 ? fast_wave_step_limit(s, h) : std::numeric_limits<double>::infinity();
+    }
+    modulus *= 4;
   }
 }
 
-double StepLimit::look_up(const std::array<double, kEntries>& table, double porosity) {
+double StepLimit::look_up(Table Bounds::*table, double porosity, double modulus) const {
   const double at = std::clamp(porosity * kEntries - 0.5, 0.0, kEntries - 1.0001);
   const int i = static_cast<int>(at);
-  return table[i] + (at - i) * (table[i + 1] - table[i]);
+  const auto entry = [&](std::size_t k) {
+    const Table& t = bounds_[k].*table;
+    return t[i] + (at - i) * (t[i + 1] - t[i]);
+  };
+  if (bounds_.size() == 1) return entry(0);
+  const double place = 0.5 * std::log2(std::max(modulus / kSoftest, 1.0));
+  const std::size_t k = static_cast<std::size_t>(place), last = bounds_.size() - 1;
+  if (k >= last) return entry(last) * std::pow(4, static_cast<double>(last) - place);
+  const double part = place - static_cast<double>(k);  // bounds are powers of the modulus, nearly
+  return std::isinf(entry(k)) ? entry(k) : std::pow(entry(k), 1 - part) * std::pow(entry(k + 1), part);
 }
 
 }  // namespace quicksand

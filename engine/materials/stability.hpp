@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <vector>
 
 #include "engine/materials/soil_material.hpp"
 
@@ -33,21 +34,31 @@ double surface_step_limit(const SaturatedSoil& soil, double h);
 /// of D dimensions passes waves with √D times the wave number, so that its bound is smaller by √D.
 double fast_wave_step_limit(const SaturatedSoil& soil, double h);
 
-/// The bounds tabulated over porosity, for one soil; cheap enough to ask for every point.
+/// The bounds tabulated over porosity, for one soil; cheap enough to ask for every point. Soil whose
+/// stiffness varies has a table for every factor of four in stiffness.
 class StepLimit {
  public:
   StepLimit() = default;
   StepLimit(const SoilMaterial& soil, double water_density, double water_compliance, double h);
-  double dry(double porosity) const { return look_up(dry_, porosity); }
+  /// `modulus` is the point's elastic constrained modulus, Pa.
+  double dry(double porosity, double modulus) const { return look_up(&Bounds::dry, porosity, modulus); }
   /// The smaller of coupled_step_limit and surface_step_limit.
-  double saturated(double porosity) const { return look_up(saturated_, porosity); }
+  double saturated(double porosity, double modulus) const {
+    return look_up(&Bounds::saturated, porosity, modulus);
+  }
   /// fast_wave_step_limit; infinite in incompressible water.
-  double fast_wave(double porosity) const { return look_up(fast_wave_, porosity); }
+  double fast_wave(double porosity, double modulus) const {
+    return look_up(&Bounds::fast_wave, porosity, modulus);
+  }
 
  private:
   static constexpr int kEntries = 50;
-  static double look_up(const std::array<double, kEntries>& table, double porosity);
-  std::array<double, kEntries> dry_{}, saturated_{}, fast_wave_{};
+  using Table = std::array<double, kEntries>;
+  struct Bounds {
+    Table dry{}, saturated{}, fast_wave{};
+  };
+  double look_up(Table Bounds::*table, double porosity, double modulus) const;
+  std::vector<Bounds> bounds_;  ///< one, or one per stiffness
 };
 
 }  // namespace quicksand

@@ -41,16 +41,37 @@ bool reaches_air(const Scene& scene, const Body& body, double h) {
   return false;
 }
 
+/// Constrained modulus (Pa) at the body's foot, where soil whose stiffness follows the stress is stiffest:
+/// from the weight of grains up to the highest body, or the given stress.
+double initial_modulus(const Scene& scene, const Body& body, const SoilMaterial& material) {
+  SoilState<3> state;
+  double pressure = 0;
+  const std::array<double, 6>& given = scene.initial.uniform_stress;
+  if (scene.initial.stress == InitialStress::uniform) {
+    pressure = -(given[0] + given[1] + given[2]) / 3;
+  } else {
+    double top = bounding_box(body.region).min[1];
+    for (const Body& other : scene.bodies) top = std::max(top, bounding_box(other.region).max[1]);
+    const double submerged = body.kind == BodyKind::saturated_soil ? scene.water.density : 0;
+    pressure = (1 - material.porosity) * (material.grain_density - submerged) * std::abs(scene.gravity[1]) *
+               (top - bounding_box(body.region).min[1]);
+  }
+  for (int i = 0; i < 3; ++i) state.stress[i] = -pressure;
+  return material.constrained_modulus<3>(state, material.porosity);
+}
+
 double initial_soil_limit(const Scene& scene, double h) {
   double limit = std::numeric_limits<double>::infinity();
   for (const Body& body : scene.bodies) {
     if (body.kind == BodyKind::water || body.fixed) continue;
     const Soil& soil = scene.soils.at(body.soil);
     const double compliance = scene.water.bulk_modulus ? 1 / *scene.water.bulk_modulus : 0;
-    const StepLimit limits(SoilMaterial::from(soil, scene.water), scene.water.density, compliance, h);
+    const SoilMaterial material = SoilMaterial::from(soil, scene.water);
+    const StepLimit limits(material, scene.water.density, compliance, h);
+    const double n = soil.porosity, modulus = initial_modulus(scene, body, material);
     const bool confined = body.kind == BodyKind::saturated_soil && !reaches_air(scene, body, h);
-    limit = std::min(limit, confined ? limits.saturated(soil.porosity)
-                                     : std::min(limits.dry(soil.porosity), limits.saturated(soil.porosity)));
+    const double saturated = limits.saturated(n, modulus);
+    limit = std::min(limit, confined ? saturated : std::min(limits.dry(n, modulus), saturated));
   }
   return limit;
 }
@@ -62,9 +83,9 @@ double initial_fast_wave_limit(const Scene& scene, double h) {
   for (const Body& body : scene.bodies) {
     if (body.kind != BodyKind::saturated_soil || body.fixed) continue;
     const Soil& soil = scene.soils.at(body.soil);
-    const StepLimit limits(SoilMaterial::from(soil, scene.water), scene.water.density,
-                           1 / scene.water.bulk_modulus.value(), h);
-    limit = std::min(limit, limits.fast_wave(soil.porosity));
+    const SoilMaterial material = SoilMaterial::from(soil, scene.water);
+    const StepLimit limits(material, scene.water.density, 1 / scene.water.bulk_modulus.value(), h);
+    limit = std::min(limit, limits.fast_wave(soil.porosity, initial_modulus(scene, body, material)));
   }
   return limit;
 }

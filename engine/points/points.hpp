@@ -37,10 +37,11 @@ struct WaterPoints : PointSet<D> {};
 
 template <int D>
 struct SoilPoints : PointSet<D> {
-  std::vector<double> porosity;        ///< –
-  std::vector<Stress<D>> stress;       ///< Pa, effective, tension positive
-  std::vector<double> plastic_strain;  ///< –, accumulated deviatoric
-  std::vector<std::int32_t> soil;      ///< index of the material
+  std::vector<double> porosity;          ///< –
+  std::vector<Stress<D>> stress;         ///< Pa, effective, tension positive
+  std::vector<double> plastic_strain;    ///< –, accumulated deviatoric
+  std::vector<double> preconsolidation;  ///< Pa; empty unless a law of the scene keeps it
+  std::vector<std::int32_t> soil;        ///< index of the material
 };
 
 }  // namespace quicksand

@@ -63,37 +63,11 @@ bool carries_nothing(const State<D>& s, std::size_t upper, std::size_t lower, do
   return a != b && s.soil_walls.closed(kUp, s.grid.index(a));
 }
 
-}  // namespace
-
+/// Vertical from the weight above, horizontal K0 times that. Columns of seeding places, each from the top
+/// down.
 template <int D>
-void set_initial_pressure(const Scene& scene, State<D>& s) {
-  if (scene.initial.pressure == InitialPressure::zero) return;
-  double g = 0;
-  for (double c : s.constants.gravity) g += c * c;
-  const double weight = s.constants.water_density * std::sqrt(g);
-  std::vector<char> seen(s.grid.count(), 0);
-  for_each_cell(s.grid, [&](int i, const Cell<D>&) {
-    if (s.cell[i].unknown < 0 || seen[i]) return;
-    const std::vector<int> cells = connected_water(s, i, seen);
-    const double level = water_level(s, cells);
-    for (int c : cells) {
-      const double depth = level - elevation<D>(s.constants.gravity, s.grid.center(s.grid.cell(c)));
-      s.pressure[c] = scene.initial.pressure == InitialPressure::uniform ? scene.initial.uniform_pressure
-                                                                         : weight * depth;
-    }
-  });
-}
-
-template <int D>
-void set_initial_stress(const Scene& scene, State<D>& s) {
+void set_k0_stress(const Scene& scene, State<D>& s) {
   SoilPoints<D>& soil = s.soil;
-  if (scene.initial.stress == InitialStress::zero) return;
-  if (scene.initial.stress == InitialStress::uniform) {
-    for (Stress<D>& stress : soil.stress)
-      for (int i = 0; i < kStress<D>; ++i) stress[i] = scene.initial.uniform_stress[i];
-    return;
-  }
-  // Columns of seeding places, each from the top down.
   const double spacing = s.grid.h / scene.numerics.points_per_cell;
   const double g = -s.constants.gravity[kUp];
   const auto column = [&](std::size_t p) {
@@ -122,12 +96,48 @@ void set_initial_stress(const Scene& scene, State<D>& s) {
     const double weight = std::max(0.0, density * g * spacing);
     const double vertical = above + 0.5 * weight;
     above += weight;
-    const double nu =
-        (3 * m.elastic.bulk - 2 * m.elastic.shear) / (2 * (3 * m.elastic.bulk + m.elastic.shear));
-    const double natural = m.law == SoilLaw::linear_elastic ? nu / (1 - nu) : 1 - m.mohr_coulomb.sin_phi;
-    const double k0 = scene.initial.k0.value_or(natural);
+    const double k0 = m.k0 ? *m.k0 : scene.initial.k0.value_or(m.natural_k0());
     soil.stress[p] = {};
     for (int d = 0; d < 3; ++d) soil.stress[p][d] = d == kUp ? -vertical : -k0 * vertical;
+  }
+}
+
+}  // namespace
+
+template <int D>
+void set_initial_pressure(const Scene& scene, State<D>& s) {
+  if (scene.initial.pressure == InitialPressure::zero) return;
+  double g = 0;
+  for (double c : s.constants.gravity) g += c * c;
+  const double weight = s.constants.water_density * std::sqrt(g);
+  std::vector<char> seen(s.grid.count(), 0);
+  for_each_cell(s.grid, [&](int i, const Cell<D>&) {
+    if (s.cell[i].unknown < 0 || seen[i]) return;
+    const std::vector<int> cells = connected_water(s, i, seen);
+    const double level = water_level(s, cells);
+    for (int c : cells) {
+      const double depth = level - elevation<D>(s.constants.gravity, s.grid.center(s.grid.cell(c)));
+      s.pressure[c] = scene.initial.pressure == InitialPressure::uniform ? scene.initial.uniform_pressure
+                                                                         : weight * depth;
+    }
+  });
+}
+
+template <int D>
+void set_initial_stress(const Scene& scene, State<D>& s) {
+  SoilPoints<D>& soil = s.soil;
+  if (scene.initial.stress == InitialStress::k0) set_k0_stress(scene, s);
+  if (scene.initial.stress == InitialStress::uniform)
+    for (Stress<D>& stress : soil.stress)
+      for (int i = 0; i < kStress<D>; ++i) stress[i] = scene.initial.uniform_stress[i];
+
+  const auto& soils = s.constants.soils;
+  if (std::any_of(soils.begin(), soils.end(), [](const auto& m) { return m.keeps_preconsolidation(); }))
+    soil.preconsolidation.assign(soil.size(), 0);
+  for (std::size_t p = 0; p < soil.size(); ++p) {
+    SoilState<D> state = soil_state(soil, p);
+    s.interventions.clamped_values += soils[soil.soil[p]].begin(state);
+    set_soil_state(soil, p, state);
   }
 }
 

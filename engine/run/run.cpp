@@ -170,12 +170,14 @@ class Run {
   void set_first_limits() {
     double limit = std::numeric_limits<double>::infinity(), fast_wave = limit;
     for (std::size_t p = 0; p < state_.soil.size(); ++p) {
-      const StepLimit& l = state_.constants.step_limits[state_.soil.soil[p]];
+      const int k = state_.soil.soil[p];
+      const StepLimit& l = state_.constants.step_limits[k];
+      const double n = state_.soil.porosity[p];
+      const double modulus =
+          state_.constants.soils[k].template constrained_modulus<D>(soil_state(state_.soil, p), n);
       const bool confined = state_.cell[state_.grid.index(state_.grid.cell_of(state_.soil.x[p]))].confined;
-      limit =
-          std::min(limit, confined ? l.saturated(state_.soil.porosity[p]) : l.dry(state_.soil.porosity[p]));
-      if (state_.constants.explicit_pressure)
-        fast_wave = std::min(fast_wave, l.fast_wave(state_.soil.porosity[p]));
+      limit = std::min(limit, confined ? l.saturated(n, modulus) : l.dry(n, modulus));
+      if (state_.constants.explicit_pressure) fast_wave = std::min(fast_wave, l.fast_wave(n, modulus));
     }
     last_.soil_limit = limit;
     last_.fast_wave_limit = fast_wave;

@@ -43,11 +43,6 @@ void check_supported(const Scene& scene, Faults& faults) {
            "permeability law ergun");
     refuse(soil.permeability.law == PermeabilityLaw::power, at_soil(name, "/permeability/law"),
            "permeability law power");
-    refuse(soil.k0.has_value(), at_soil(name, "/k0"), "k0 of a soil");
-    refuse(soil.model.law == SoilLaw::modified_cam_clay, at_soil(name, "/model/law"), "modified_cam_clay");
-    refuse(soil.model.tension_cutoff.has_value(), at_soil(name, "/model/tension_cutoff"), "tension_cutoff");
-    refuse(soil.model.residual_cohesion.has_value(), at_soil(name, "/model/residual_cohesion"),
-           "residual_cohesion");
   }
   refuse(scene.initial.water_table && scene.gravity != Vec3{0, 0, 0}, "/initial/water_table",
          "a given water table");

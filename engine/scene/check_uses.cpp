@@ -1,9 +1,9 @@
 // Names, materials and the initial state: what refers to what, and what nothing uses.
 
 #include <algorithm>
-#include <cmath>
 #include <set>
 
+#include "engine/materials/soil_material.hpp"
 #include "engine/scene/check_parts.hpp"
 
 namespace quicksand {
@@ -19,39 +19,14 @@ void check_unique(const Items& items, const char* list, Faults& faults) {
           {at_index(list, k, "/name"), "the name \"" + items[k].name + "\" is used twice: choose another"});
 }
 
-/// The Mohr–Coulomb cone: φ, ψ, c and what bounds and softens it.
-void check_cone(const std::string& name, const SoilModel& model, Faults& faults) {
-  if (model.dilation_angle > model.friction_angle)
-    faults.push_back({at_soil(name, "/model/dilation_angle"),
-                      text(model.dilation_angle) + "° is above the friction angle " +
-                          text(model.friction_angle) +
-                          "°: the soil would create energy; give at most the friction angle"});
-  if (model.friction_angle == 0 && model.cohesion == 0)
-    faults.push_back({at_soil(name, "/model/friction_angle"),
-                      "no friction and no cohesion: soil without strength; give one of them"});
-  if (model.residual_cohesion && *model.residual_cohesion >= model.cohesion)
-    faults.push_back({at_soil(name, "/model/residual_cohesion"),
-                      text(*model.residual_cohesion) + " Pa is not below the cohesion " +
-                          text(model.cohesion) + " Pa: it has no effect"});
-  const double degree = std::acos(-1.0) / 180;
-  const double apex = model.cohesion / std::tan(model.friction_angle * degree);
-  if (model.tension_cutoff && model.friction_angle > 0 && *model.tension_cutoff > apex)
-    faults.push_back({at_soil(name, "/model/tension_cutoff"),
-                      text(*model.tension_cutoff) + " Pa is above the cone's apex c/tan φ = " + text(apex) +
-                          " Pa: it has no effect"});
-}
-
 void check_soil(const std::string& name, const Soil& soil, Faults& faults) {
   const SoilModel& model = soil.model;
   if (soil.max_porosity && *soil.max_porosity <= soil.porosity)
     faults.push_back(
         {at_soil(name, "/max_porosity"), text(*soil.max_porosity) + " is not above the porosity " +
                                              text(soil.porosity) + ": the grains would never touch"});
-  if (model.law == SoilLaw::modified_cam_clay && model.swelling_slope >= model.compression_slope)
-    faults.push_back({at_soil(name, "/model/swelling_slope"),
-                      text(model.swelling_slope) + " is not below the compression slope " +
-                          text(model.compression_slope) + ": unloading would be softer than loading"});
-  if (model.law == SoilLaw::mohr_coulomb) check_cone(name, model, faults);
+  for (const auto& [key, detail] : check_model(model))
+    faults.push_back({at_soil(name, "/model/" + key), detail});
 }
 
 void check_soil_uses(const Scene& scene, Faults& faults) {
@@ -93,6 +68,21 @@ void check_k0(const Scene& scene, Faults& faults) {
                                                     : "has no effect: every soil that moves has its own k0"});
 }
 
+/// Soils that have no stiffness without stress.
+void check_stress(const Scene& scene, Faults& faults) {
+  const bool stress_free = scene.initial.stress == InitialStress::zero ||
+                           (scene.initial.stress == InitialStress::k0 && scene.gravity == Vec3{0, 0, 0});
+  if (!stress_free) return;
+  for (const Body& body : scene.bodies) {
+    const auto soil = scene.soils.find(body.soil);
+    if (body.kind != BodyKind::water && !body.fixed && soil != scene.soils.end() &&
+        needs_initial_stress(soil->second.model))
+      faults.push_back({"/initial/stress", "the soil \"" + soil->first + "\" of the body \"" + body.name +
+                                               "\" has no stiffness without stress: give k0 with gravity, " +
+                                               "or uniform with uniform_stress"});
+  }
+}
+
 }  // namespace
 
 void check_names(const Scene& scene, Faults& faults) {
@@ -120,6 +110,7 @@ void check_materials(const Scene& scene, Faults& faults) {
         {"/numerics/pressure",
          "explicit has no stable step in incompressible water: give materials.water.bulk_modulus a "
          "value or use implicit"});
+  check_stress(scene, faults);
   const bool tilted = scene.gravity[0] != 0 || scene.gravity[2] != 0;
   if (tilted && moving_soil && scene.initial.stress == InitialStress::k0 &&
       scene.domain.dimension != Dimension::space)

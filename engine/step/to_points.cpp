@@ -133,13 +133,8 @@ void water_from_faces(State<D>& s, std::uint32_t p, double dt, double pic, Total
 template <int D>
 double strain_energy(const State<D>& s, std::size_t p) {
   const SoilMaterial& material = s.constants.soils[s.soil.soil[p]];
-  const Stress<D>& sigma = s.soil.stress[p];
-  const double volume = s.soil.mass[p] / (material.grain_density * (1 - s.soil.porosity[p]));
-  const double trace = sigma[0] + sigma[1] + sigma[2];
-  double square = sigma[0] * sigma[0] + sigma[1] * sigma[1] + sigma[2] * sigma[2];
-  for (int i = 3; i < kStress<D>; ++i) square += 2 * sigma[i] * sigma[i];
-  const Elastic& e = material.elastic;
-  return volume * (0.25 * (square - trace * trace / 3) / e.shear + trace * trace / (18 * e.bulk));
+  const double n = s.soil.porosity[p], volume = s.soil.mass[p] / (material.grain_density * (1 - n));
+  return volume * material.energy<D>(soil_state(s.soil, p), n);
 }
 
 template <int D, bool kAxial>
@@ -170,26 +165,27 @@ void soil_from_faces(State<D>& s, std::uint32_t p, double dt, double pic, Totals
   // Dˢn/Dt = (1−n) ∇·vˢ, integrated: the grains' volume stays.
   double divergence = hoop;
   for (int d = 0; d < D; ++d) divergence += l[d][d];
-  double& n = soil.porosity[p];
-  const double exact = 1 - (1 - n) / std::max(1 + dt * divergence, 0.1);
-  n = std::clamp(exact, kMinRoom, kMaxPorosity);
+  const double before = soil.porosity[p];
+  const double exact = 1 - (1 - before) / std::max(1 + dt * divergence, 0.1);
+  const double n = soil.porosity[p] = std::clamp(exact, kMinRoom, kMaxPorosity);
   totals.interventions.clamped_values += n != exact;
 
-  if (n > material.max_porosity) {
-    soil.stress[p] = {};  // the grains do not touch
-  } else {
-    const StressUpdate<D> u = update_stress<D>(material, soil.stress[p], l, dt, hoop);
-    soil.stress[p] = u.stress;
-    soil.plastic_strain[p] += u.plastic_strain;
-  }
+  SoilState<D> state = soil_state(soil, p);
+  if (n > material.max_porosity)
+    state.stress = {};  // the grains do not touch
+  else
+    totals.interventions.clamped_values += update_state<D>(material, state, before, l, dt, hoop);
+  set_soil_state(soil, p, state);
   // Next to the air no pressure resists, so that the frame's own wave is the bound. Grains that do not touch
   // may touch again in the next step.
   const double touching = std::min(n, material.max_porosity);
+  const double modulus = material.constrained_modulus<D>(state, touching);
   const StepLimit& limit = s.constants.step_limits[soil.soil[p]];
   const bool confined = s.cell[kernel.home].confined;
-  totals.soil_limit = std::min(totals.soil_limit, confined ? limit.saturated(touching) : limit.dry(touching));
+  totals.soil_limit = std::min(totals.soil_limit,
+                               confined ? limit.saturated(touching, modulus) : limit.dry(touching, modulus));
   if (s.constants.explicit_pressure)
-    totals.fast_wave_limit = std::min(totals.fast_wave_limit, limit.fast_wave(touching));
+    totals.fast_wave_limit = std::min(totals.fast_wave_limit, limit.fast_wave(touching, modulus));
   const double strain = strain_energy(s, p);
   totals.strain += strain;
   totals.mass += soil.mass[p];

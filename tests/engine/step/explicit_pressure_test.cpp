@@ -30,8 +30,10 @@ double stable_step(const Scene& scene, const State<D>& s) {
   double limit = std::numeric_limits<double>::infinity(), fast_wave = limit;
   for (std::size_t p = 0; p < s.soil.size(); ++p) {
     const StepLimit& l = s.constants.step_limits[s.soil.soil[p]];
-    limit = std::min({limit, l.dry(s.soil.porosity[p]), l.saturated(s.soil.porosity[p])});
-    fast_wave = std::min(fast_wave, l.fast_wave(s.soil.porosity[p]));
+    const double n = s.soil.porosity[p];
+    const double modulus = s.constants.soils[s.soil.soil[p]].template constrained_modulus<D>({}, n);
+    limit = std::min({limit, l.dry(n, modulus), l.saturated(n, modulus)});
+    fast_wave = std::min(fast_wave, l.fast_wave(n, modulus));
   }
   return choose_step(scene, {limit, 0, true, fast_wave}).seconds;
 }

@@ -1,0 +1,106 @@
+#include "engine/materials/tensor.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+
+namespace quicksand {
+namespace {
+
+using Matrix = Eigen::Matrix3d;
+
+template <int D>
+Matrix to_matrix(const Stress<D>& s) {
+  Matrix m = Matrix::Zero();
+  m(0, 0) = s[0], m(1, 1) = s[1], m(2, 2) = s[2];
+  m(0, 1) = m(1, 0) = s[3];
+  if constexpr (D == 3) {
+    m(1, 2) = m(2, 1) = s[4];
+    m(2, 0) = m(0, 2) = s[5];
+  }
+  return m;
+}
+
+template <int D>
+Stress<D> to_stress(const Matrix& m) {
+  if constexpr (D == 2)
+    return {m(0, 0), m(1, 1), m(2, 2), m(0, 1)};
+  else
+    return {m(0, 0), m(1, 1), m(2, 2), m(0, 1), m(1, 2), m(2, 0)};
+}
+
+/// Closed form for the plane: z is principal, the other two are a rotation in the plane.
+Principal principal_plane(const Stress<2>& s) {
+  const double mean = 0.5 * (s[0] + s[1]), half = 0.5 * (s[0] - s[1]);
+  const double radius = std::hypot(half, s[3]);
+  const double angle = radius > 0 ? 0.5 * std::atan2(s[3], half) : 0;
+  const double c = std::cos(angle), sn = std::sin(angle);
+  Principal p;
+  std::array<int, 3> column;  // where the in-plane major, in-plane minor and z directions go
+  if (s[2] >= mean + radius)
+    p.value = {s[2], mean + radius, mean - radius}, column = {1, 2, 0};
+  else if (s[2] >= mean - radius)
+    p.value = {mean + radius, s[2], mean - radius}, column = {0, 2, 1};
+  else
+    p.value = {mean + radius, mean - radius, s[2]}, column = {0, 1, 2};
+  p.direction.col(column[0]) << c, sn, 0;
+  p.direction.col(column[1]) << -sn, c, 0;
+  p.direction.col(column[2]) << 0, 0, 1;
+  return p;
+}
+
+}  // namespace
+
+template <int D>
+Strain<D> strain_increment(const Gradient<D>& l, double dt, [[maybe_unused]] double hoop) {
+  if constexpr (D == 2)
+    return {l[0][0] * dt, l[1][1] * dt, hoop * dt, 0.5 * (l[0][1] + l[1][0]) * dt};
+  else
+    return {l[0][0] * dt,
+            l[1][1] * dt,
+            l[2][2] * dt,
+            0.5 * (l[0][1] + l[1][0]) * dt,
+            0.5 * (l[1][2] + l[2][1]) * dt,
+            0.5 * (l[2][0] + l[0][2]) * dt};
+}
+
+template <int D>
+Stress<D> rotated(const Stress<D>& stress, const Gradient<D>& l, double dt) {
+  Matrix spin = Matrix::Zero();
+  for (int i = 0; i < D; ++i)
+    for (int j = 0; j < D; ++j) spin(i, j) = 0.5 * (l[i][j] - l[j][i]) * dt;
+  const Matrix s = to_matrix<D>(stress);
+  return to_stress<D>(s + spin * s - s * spin);
+}
+
+template <int D>
+Principal principal(const Stress<D>& s) {
+  if constexpr (D == 2) {
+    return principal_plane(s);
+  } else {
+    const Eigen::SelfAdjointEigenSolver<Matrix> solver(to_matrix<D>(s));
+    Principal p;
+    for (int i = 0; i < 3; ++i) {
+      p.value[i] = solver.eigenvalues()(2 - i);
+      p.direction.col(i) = solver.eigenvectors().col(2 - i);
+    }
+    return p;
+  }
+}
+
+template <int D>
+Stress<D> with_values(const Principal& p, const std::array<double, 3>& value) {
+  const Matrix m =
+      p.direction * Eigen::Vector3d(value[0], value[1], value[2]).asDiagonal() * p.direction.transpose();
+  return to_stress<D>(m);
+}
+
+template Strain<2> strain_increment<2>(const Gradient<2>&, double, double);
+template Strain<3> strain_increment<3>(const Gradient<3>&, double, double);
+template Stress<2> rotated<2>(const Stress<2>&, const Gradient<2>&, double);
+template Stress<3> rotated<3>(const Stress<3>&, const Gradient<3>&, double);
+template Principal principal<2>(const Stress<2>&);
+template Principal principal<3>(const Stress<3>&);
+template Stress<2> with_values<2>(const Principal&, const std::array<double, 3>&);
+template Stress<3> with_values<3>(const Principal&, const std::array<double, 3>&);
+
+}  // namespace quicksand

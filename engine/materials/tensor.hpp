@@ -1,0 +1,55 @@
+#pragma once
+// Symmetric tensors as points hold them, xx yy zz xy [yz zx] with tensor (not engineering) shear components.
+
+#include <Eigen/Dense>
+
+#include "engine/points/points.hpp"
+
+namespace quicksand {
+
+/// Velocity gradient, ∂v_i/∂x_j in 1/s.
+template <int D>
+using Gradient = std::array<Vec<D>, D>;
+template <int D>
+using Strain = Stress<D>;
+
+template <std::size_t N>
+double trace(const std::array<double, N>& t) {
+  return t[0] + t[1] + t[2];
+}
+
+template <std::size_t N>
+std::array<double, N> deviator(std::array<double, N> t) {
+  const double mean = trace(t) / 3;
+  for (int i = 0; i < 3; ++i) t[i] -= mean;
+  return t;
+}
+
+/// t:t, each shear component counted twice.
+template <std::size_t N>
+double contracted(const std::array<double, N>& t) {
+  double sum = 0;
+  for (std::size_t i = 0; i < N; ++i) sum += (i < 3 ? 1 : 2) * t[i] * t[i];
+  return sum;
+}
+
+/// Strain of a step of dt seconds; in the plane the third strain grows at the rate `hoop`, 1/s.
+template <int D>
+Strain<D> strain_increment(const Gradient<D>& l, double dt, double hoop);
+
+/// Stress carried along with the material's spin over dt seconds (Jaumann rate).
+template <int D>
+Stress<D> rotated(const Stress<D>& stress, const Gradient<D>& l, double dt);
+
+/// Principal values in descending order with their directions as columns.
+struct Principal {
+  std::array<double, 3> value;
+  Eigen::Matrix3d direction;
+};
+template <int D>
+Principal principal(const Stress<D>& s);
+/// The tensor with other principal values in the same directions.
+template <int D>
+Stress<D> with_values(const Principal& p, const std::array<double, 3>& value);
+
+}  // namespace quicksand
