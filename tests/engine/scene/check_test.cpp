@@ -156,9 +156,15 @@ TEST(Check, LawsHoldSensibleValues) {
   EXPECT_EQ(model([&](SoilModel& m) { m = cam_clay(0.04); }), Pointers{});
   EXPECT_EQ(model([&](SoilModel& m) { m = cam_clay(0.2); }),
             Pointers{"/materials/soils/sand/model/swelling_slope"});
-  EXPECT_EQ(model([](SoilModel& m) { m.cohesion = 100, m.residual_cohesion = 10; }), Pointers{});
-  EXPECT_EQ(model([](SoilModel& m) { m.cohesion = 100, m.residual_cohesion = 100; }),
-            Pointers{"/materials/soils/sand/model/residual_cohesion"});
+  EXPECT_EQ(model([](SoilModel& m) { m.cohesion = 100, m.residual_cohesion = 10, m.softening_strain = 0.1; }),
+            Pointers{});
+  EXPECT_EQ(model([](SoilModel& m) { m.cohesion = 100, m.residual_cohesion = 10; }),
+            Pointers{"/materials/soils/sand/model/softening_strain"});
+  EXPECT_EQ(model([](SoilModel& m) { m.cohesion = 100, m.softening_strain = 0.1; }),
+            Pointers{"/materials/soils/sand/model/softening_strain"});
+  EXPECT_EQ(
+      model([](SoilModel& m) { m.cohesion = 100, m.residual_cohesion = 100, m.softening_strain = 0.1; }),
+      Pointers{"/materials/soils/sand/model/residual_cohesion"});
   EXPECT_EQ(model([](SoilModel& m) { m.cohesion = 100, m.tension_cutoff = 173; }),
             Pointers{});  // apex: 173.2
   EXPECT_EQ(model([](SoilModel& m) { m.cohesion = 100, m.tension_cutoff = 174; }),
