@@ -113,6 +113,26 @@ TEST(Schema, DescribesEveryKeyWithUnitAndRange) {
   });
 }
 
+/// Whether the text says when the key is needed or what holds without it.
+bool tells_of_absence(const std::string& text) {
+  for (const char* word : {"required", "Required", "if absent", "instead of"})
+    if (text.find(word) != std::string::npos) return true;
+  return false;
+}
+
+TEST(Schema, SaysWhatHoldsWithoutAKey) {
+  walk(schema(), "", [](const json& node, const std::string& where) {
+    if (!node.contains("properties") || node.contains("minProperties")) return;  // one of several shapes
+    const json required = node.value("required", json::array());
+    for (const auto& item : node["properties"].items()) {
+      const bool needed = std::find(required.begin(), required.end(), item.key()) != required.end();
+      EXPECT_TRUE(needed || item.value().contains("default") ||
+                  tells_of_absence(item.value()["description"].get<std::string>()))
+          << where << "/" << item.key();
+    }
+  });
+}
+
 TEST(Schema, DefaultsAreAllowedValuesAndThoseOfTheScene) {
   const json& d = schema()["definitions"];
   const auto default_of = [&](const char* object, const char* key) {
