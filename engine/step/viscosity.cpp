@@ -52,13 +52,15 @@ double axial_laplacian(const State<2>& s, int d, int face) {
 
 template <int D>
 double viscous_acceleration(const State<D>& s, int d, int face) {
-  double sum = 0;
+  const double per_velocity =
+      s.constants.viscosity / s.constants.water_density * s.grid.inverse_h * s.grid.inverse_h;
   if constexpr (D == 2) {
-    if (s.grid.axial) sum = axial_laplacian(s, d, face);
+    if (s.grid.axial) return per_velocity * axial_laplacian(s, d, face);
   }
-  for (int axis = 0; axis < D && !s.grid.axial; ++axis)
+  double sum = 0;
+  for (int axis = 0; axis < D; ++axis)
     for (int side : {0, 1}) sum += difference(s, d, face, axis, side);
-  return s.constants.viscosity / s.constants.water_density * sum * s.grid.inverse_h * s.grid.inverse_h;
+  return per_velocity * sum;
 }
 
 template double viscous_acceleration<2>(const State<2>&, int, int);
