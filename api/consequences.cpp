@@ -52,6 +52,12 @@ constexpr Doubt doubts[] = {
     {"/initial", "/bodies", true},
     {"/numerics", "/bodies", true},
     {"/stages/*/damping", "/bodies", true},
+    {"/stages/*/quasi_static", "/bodies", true},
+    {"/numerics/quasi_static_transits", "/stages", true},
+    {"/materials", "/reservoirs"},  // is there water
+    {"/initial", "/reservoirs"},
+    {"/numerics", "/reservoirs"},
+    {"/output", "/reservoirs"},
     {"/bodies/*/soil", "/materials"},
     {"/bodies/*/soil", "/materials/soils"},
     {"/stages/*/open_gates", "/gates"},

@@ -193,5 +193,53 @@ TEST(EveryKey, IsWrittenInSomeScene) {
   EXPECT_EQ(written, known);
 }
 
+/// Whether the pointer names a place of the document, or a member that one of its objects lacks.
+bool leads_somewhere(const json& document, const std::string& pointer) {
+  if (pointer.empty()) return true;
+  const json::json_pointer place(pointer);
+  return document.contains(place) || document.contains(place.parent_pointer());
+}
+
+TEST(EveryKey, AnyValueAnywhereIsTakenOrExplained) {
+  const json odd[] = {nullptr,
+                      true,
+                      -1,
+                      0,
+                      1e-300,
+                      1e300,
+                      2.5,
+                      "x",
+                      "",
+                      json::array(),
+                      json::object(),
+                      json{1, 2},
+                      json{1, 2, 3},
+                      json{{"x", 1}}};
+  for (const json& document : documents()) {
+    const json places = document.flatten();
+    std::set<std::string> done;
+    for (const auto& item : places.items()) {
+      // The place itself, and everything that holds it.
+      for (json::json_pointer place(item.key()); !place.empty(); place.pop_back()) {
+        if (!done.insert(place.to_string()).second) break;
+        std::vector<json> changed;
+        for (const json& value : odd) (changed.emplace_back(document))[place] = value;
+        changed.push_back(document.patch(json{{{"op", "remove"}, {"path", place.to_string()}}}));
+        for (const json& mutation : changed) {
+          const ParsedCase parsed = parse_case(mutation.dump());
+          ASSERT_EQ(parsed.scene.has_value(), parsed.faults.empty()) << place;
+          for (const Fault& fault : parsed.faults)
+            ASSERT_TRUE(leads_somewhere(mutation, fault.pointer)) << place << " gives " << fault.pointer;
+          if (!parsed.scene) continue;
+          const std::string once = resolved_case(*parsed.scene);
+          const ParsedCase again = parse_case(once);
+          ASSERT_TRUE(again.scene) << place << test::said(again.faults);
+          ASSERT_EQ(resolved_case(*again.scene), once) << place;
+        }
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace quicksand
