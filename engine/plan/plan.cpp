@@ -18,6 +18,8 @@ namespace {
 /// Point-steps per second and core of the two-phase step, measured on a 2.6 GHz Zen 4 core with
 /// cases/heave; only the estimate of the run's wall time depends on it.
 constexpr double kPointStepsPerSecond = 3e6;
+/// The same step in space, where a point touches 81 faces instead of 18: measured 4 times as long.
+constexpr double kCostInSpace = 4;
 
 /// Whether the top of a body lies open to the air anywhere: no other wet body above its surface, looked at in
 /// every column of cells.
@@ -153,8 +155,8 @@ Plan make_plan(const Scene& scene) {
   plan.time_step = plan.bound.seconds;
   for (const Stage& stage : scene.stages) plan.end_time += stage.duration;
   plan.steps = std::ceil(plan.end_time / plan.time_step);
-  plan.seconds =
-      plan.steps * static_cast<double>(plan.soil_points + plan.water_points) / kPointStepsPerSecond;
+  plan.seconds = plan.steps * static_cast<double>(plan.soil_points + plan.water_points) *
+                 (plan.dimensions == 3 ? kCostInSpace : 1) / kPointStepsPerSecond;
   return plan;
 }
 

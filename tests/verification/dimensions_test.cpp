@@ -189,5 +189,40 @@ TEST(Axisymmetric, ClosedTankWithAStepStaysAtRest) {
   expect_rest(s, 0.3, 1e-3);
 }
 
+/// A full cylinder under even pressure bears it everywhere, σrr = σθθ = −p, and shrinks by u = −p r
+/// (1+ν)(1−2ν)/E.
+TEST(Axisymmetric, PressedCylinderIsUniform) {
+  constexpr double kPressure = 1e3, kYoung = 1e7, kPoisson = 0.3;
+  Scene s = scene(Dimension::axisymmetric, {1.2, 0.1, 0}, 0.05, 1.2);
+  s.gravity = {};
+  s.soils = {{"soil", sand(0.4, 1e-3, kYoung)}};
+  s.bodies = {body("cylinder", BodyKind::soil, {0, 0, 0}, {1, 0.1, 0}, "soil")};
+  Load load;
+  load.name = "pressure", load.body = "cylinder", load.side = BodySide::right;
+  load.traction = {-kPressure, 0, 0}, load.ramp = 1;
+  s.loads = {load};
+  s.initial.stress = InitialStress::zero;
+  s.numerics.pic_rate = 1000;
+  const Recorded r = record(s);
+  ASSERT_EQ(r.report.status, RunStatus::succeeded) << r.report.failure.message;
+  const Frame& last = r.results.frames.back();
+  const auto& stress = field(last, "effective_stress");
+  const auto& u = field(last, "displacement");
+  double off_axis = 0, beside_axis = 0, moved = 0;
+  for (std::size_t i = 0; i < last.points(); ++i) {
+    const double at = last.position[3 * i] - u[3 * i];
+    const double expected = -kPressure * at * (1 + kPoisson) * (1 - 2 * kPoisson) / kYoung;
+    moved = std::max(moved, std::abs(u[3 * i] - expected));
+    double& error = at < 0.1 ? beside_axis : off_axis;
+    for (int k : {0, 2}) error = std::max(error, std::abs(stress[4 * i + k] / -kPressure - 1));
+  }
+  moved /= kPressure * (1 + kPoisson) * (1 - 2 * kPoisson) / kYoung;
+  std::printf("stress off by %.4f, beside the axis %.4f; displacement %.4f of the largest\n", off_axis,
+              beside_axis, moved);
+  EXPECT_LT(off_axis, 0.01);
+  EXPECT_LT(beside_axis, 0.04);
+  EXPECT_LT(moved, 0.01);
+}
+
 }  // namespace
 }  // namespace quicksand::test
