@@ -48,7 +48,14 @@ void say_loads(const Scene& scene, std::size_t index, Sentences& does) {
   }
 }
 
-void say_method(const Scene& scene, const Stage& stage, Sentences& does) {
+bool has_free_water(const Scene& scene, std::size_t index) {
+  return std::any_of(scene.bodies.begin(), scene.bodies.end(), [&](const Body& body) {
+    return body.kind == BodyKind::water && present(scene, index, body.name);
+  });
+}
+
+void say_method(const Scene& scene, std::size_t index, Sentences& does) {
+  const Stage& stage = scene.stages[index];
   if (stage.damping > 0)
     does.push_back(
         "Damping " + text(stage.damping) +
@@ -57,7 +64,11 @@ void say_method(const Scene& scene, const Stage& stage, Sentences& does) {
   if (stage.quasi_static)
     does.push_back("Quasi-static: inertia, never weight, is scaled so that a wave crosses the soil " +
                    text(scene.numerics.quasi_static_transits) +
-                   " times within the process; whatever accelerates freely is slower than in nature.");
+                   " times within the process; whatever falls is slower than in nature.");
+  if (stage.quasi_static && has_free_water(scene, index))
+    does.push_back(
+        "Free water is as heavy as ever but as slow as its scaled inertia: right at rest, its waves are "
+        "not.");
   if (stage.until_rest)
     does.push_back("Ends at rest: when no point is faster than " + text(stage.until_rest->speed) + " m/s" +
                    (stage.until_rest->at_least > 0
@@ -77,7 +88,7 @@ std::vector<StagePlan> plan_stages(const Scene& scene) {
     say_gates(scene, stage, plan.does);
     say_heads(scene, k, plan.does);
     say_loads(scene, k, plan.does);
-    say_method(scene, stage, plan.does);
+    say_method(scene, k, plan.does);
     time = plan.end;
     plans.push_back(std::move(plan));
   }

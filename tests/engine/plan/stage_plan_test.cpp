@@ -53,7 +53,17 @@ TEST(StagePlan, SaysWhatEachStageDoes) {
                  "Reservoir lake: level 2 m, then 1.5 m at once.", "Reservoir drain: level 0.25 m.",
                  "Load road goes on.", "Load crane ends.",
                  "Quasi-static: inertia, never weight, is scaled so that a wave crosses the soil 200 times "
-                 "within the process; whatever accelerates freely is slower than in nature."}));
+                 "within the process; whatever falls is slower than in nature."}));
+}
+
+TEST(StagePlan, WarnsOfFreeWaterInASlowStage) {
+  Scene s = pit();
+  s.bodies.resize(1);
+  s.bodies[0].name = "fill", s.bodies[0].kind = BodyKind::water;
+  s.stages[1].quasi_static = true;
+  const auto stages = plan_stages(s);
+  EXPECT_NE(stages[1].does.back().find("Free water"), std::string::npos);
+  EXPECT_EQ(stages[2].does.back().find("Free water"), std::string::npos);  // removed by then
 }
 
 TEST(StagePlan, ASimpleStageOnlyTakesTime) {
