@@ -22,6 +22,7 @@ namespace {
 constexpr const char* units_document =
     R"({"length": "m", "time": "s", "mass": "kg", "stress": "Pa", "pressure": "Pa", "velocity": "m/s",)"
     R"( "head": "m", "plane_strain": "extensive quantities per metre of thickness",)"
+    R"( "axisymmetric": "extensive quantities per radian",)"
     R"( "sign": "stress tension positive, water pressure compression positive"})";
 
 std::string processor_name() {

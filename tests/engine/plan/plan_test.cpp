@@ -95,6 +95,10 @@ TEST(Plan, SaysWhatIsLeftOut) {
   EXPECT_TRUE(says(w, "No viscosity"));
   EXPECT_TRUE(says(w, "incompressible"));
   EXPECT_TRUE(says(make_plan(bed()), "Fixed soil"));
+  EXPECT_FALSE(says(make_plan(bed()), "per radian"));
+  Scene round = bed();
+  round.domain.dimension = Dimension::axisymmetric;
+  EXPECT_TRUE(says(make_plan(round), "per radian"));
 }
 
 }  // namespace
