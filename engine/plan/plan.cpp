@@ -121,8 +121,6 @@ void explain(const Scene& scene, Plan& plan) {
              : "Water: momentum balance and one pressure per wet cell, advanced explicitly.",
       "No water: no water points, no pressure, no drag.");
   say(plan.has_viscosity, "Viscosity of the water: on its velocities, explicitly.", "No viscosity.");
-  if (scene.domain.dimension == Dimension::axisymmetric)
-    plan.reasons.push_back("About an axis: x is the radius; masses, volumes and forces are per radian.");
   if (plan.fixed_soil_points)
     plan.reasons.push_back("Fixed soil resists the water and stops grains; its own stress is not computed.");
   if (scene.domain.dimension == Dimension::axisymmetric)
