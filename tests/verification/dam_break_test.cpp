@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "tests/verification/book.hpp"
+#include "tests/verification/dimensions.hpp"
 
 namespace quicksand::test {
 namespace {
@@ -63,17 +64,10 @@ TEST(DamBreak, FrontRunsAsMeasured) {
 }
 
 /// The same column in a channel a fifth of its width deep between smooth sides.
-Scene in_space(Scene scene) {
-  scene.domain.dimension = Dimension::space;
-  scene.domain.max[2] = 0.2 * kWidth;
-  scene.bodies[0].region.max[2] = scene.domain.max[2];
-  return scene;
-}
-
 TEST(DamBreak, FrontRunsInSpaceAsInThePlane) {
   const Scene scene = load_case("dam-break", 2);
   Page page("dam-break", "cells of a/10, space");
-  const Scene deep = in_space(scene);
+  const Scene deep = in_space(scene, 0.2 * kWidth);
   Curve space = front(deep, page.run(deep, kSplash));
   const Curve plane = front(scene, record(scene));
   page.near("slope of the front", slope(space.x, space.result), kSlope, 0.03, "dZ/dT");

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "tests/verification/book.hpp"
+#include "tests/verification/dimensions.hpp"
 
 namespace quicksand::test {
 namespace {
@@ -95,9 +96,8 @@ TEST(Hydrostatic, TankWithAStepAndAThinWall) {
 }
 
 /// cases/hydrostatic: every point of every frame.
-void hydrostatic_page(double factor, double seconds, const std::string& size) {
+void hydrostatic_page(Scene scene, double seconds, const std::string& size) {
   constexpr double kLevel = 0.4, kWeight = 9810;  // m, N/m³
-  Scene scene = load_case("hydrostatic", factor);
   scene.stages[0].duration = seconds;
   Page page("hydrostatic", size);
   const Recorded r = page.run(scene);
@@ -109,7 +109,7 @@ void hydrostatic_page(double factor, double seconds, const std::string& size) {
     for (std::size_t i = 0; i < frame.points(); ++i) {
       const double y = frame.position[3 * i + 1];
       worst = std::max(worst, std::abs(p[i] - kWeight * (kLevel - y)) / (kWeight * kLevel));
-      fastest = std::max(fastest, static_cast<double>(std::hypot(v[3 * i], v[3 * i + 1])));
+      fastest = std::max(fastest, static_cast<double>(std::hypot(v[3 * i], v[3 * i + 1], v[3 * i + 2])));
       if (&frame != &r.results.frames.back() || frame.phase[i] == 0) continue;
       profile.x.push_back(p[i] / 1e3), profile.result.push_back(y);
     }
@@ -122,8 +122,21 @@ void hydrostatic_page(double factor, double seconds, const std::string& size) {
   page.curve(profile);
 }
 
-TEST(Hydrostatic, LayersAndAStepInTheFloor) { hydrostatic_page(2, 1, "cells of 20 mm, 1 s"); }
-TEST(SlowHydrostatic, LayersAndAStepInTheFloor) { hydrostatic_page(1, 10, "cells of 10 mm, 10 s"); }
+TEST(Hydrostatic, LayersAndAStepInTheFloor) {
+  hydrostatic_page(load_case("hydrostatic", 2), 1, "cells of 20 mm, 1 s");
+}
+TEST(Hydrostatic, LayersAndAStepAboutAnAxis) {
+  hydrostatic_page(about_axis(load_case("hydrostatic", 2)), 1, "cells of 20 mm, 1 s, about an axis");
+}
+TEST(Hydrostatic, LayersAndAStepInSpace) {
+  hydrostatic_page(in_space(load_case("hydrostatic", 2), 0.04), 0.2, "cells of 20 mm, 0.2 s, space");
+}
+TEST(SlowHydrostatic, LayersAndAStepInTheFloor) {
+  hydrostatic_page(load_case("hydrostatic"), 10, "cells of 10 mm, 10 s");
+}
+TEST(SlowHydrostatic, LayersAndAStepInSpace) {
+  hydrostatic_page(in_space(load_case("hydrostatic", 2), 0.1), 2, "cells of 20 mm, 2 s, space");
+}
 
 /// No free surface anywhere: pressure zero at the lid.
 TEST(Hydrostatic, FullTankWithAStep) {
