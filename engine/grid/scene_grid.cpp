@@ -37,13 +37,45 @@ std::vector<char> cells_in(const Grid<D>& grid, const Region& region) {
 
 template <int D>
 void close_domain(const Scene& scene, const Grid<D>& grid, Walls<D>& walls) {
+  const auto close = [&](int d, int face, SideKind kind) {
+    if (kind == SideKind::symmetry)
+      walls.close_as_symmetry(d, face);
+    else
+      walls.close(d, face, kind == SideKind::no_slip);
+  };
   for_each_cell(grid, [&](int i, const Cell<D>& c) {
     for (int d = 0; d < D; ++d) {
-      if (c[d] == 0) walls.close(d, i, scene.domain.sides[2 * d].kind == SideKind::no_slip);
-      if (c[d] == grid.cells[d] - 1)
-        walls.close(d, i + grid.stride[d], scene.domain.sides[2 * d + 1].kind == SideKind::no_slip);
+      if (c[d] == 0) close(d, i, scene.domain.sides[2 * d].kind);
+      if (c[d] == grid.cells[d] - 1) close(d, i + grid.stride[d], scene.domain.sides[2 * d + 1].kind);
     }
   });
+}
+
+/// Faces of reservoirs and of open sides that have room on exactly one side.
+template <int D>
+std::vector<PortFace> find_ports(const Scene& scene, const Grid<D>& grid, const Walls<D>& walls) {
+  std::vector<PortFace> ports;
+  const auto add = [&](int d, int face, int reservoir) {
+    const bool low = walls.blocked(face - grid.stride[d]), high = walls.blocked(face);
+    if (low != high) ports.push_back({d, face, low ? 1 : -1, reservoir});
+  };
+  for (std::size_t r = 0; r < scene.reservoirs.size(); ++r)
+    for (const auto& [d, face] : faces_on(grid, scene.reservoirs[r].line)) add(d, face, static_cast<int>(r));
+  const std::size_t of_reservoirs = ports.size();
+  const auto taken = [&](int d, int face) {
+    for (std::size_t k = 0; k < of_reservoirs; ++k)
+      if (ports[k].d == d && ports[k].face == face) return true;
+    return false;
+  };
+  for_each_cell(grid, [&](int i, const Cell<D>& c) {
+    for (int d = 0; d < D; ++d)
+      for (int side : {0, 1}) {
+        const int face = i + side * grid.stride[d];
+        if (c[d] != (side ? grid.cells[d] - 1 : 0)) continue;
+        if (scene.domain.sides[2 * d + side].kind == SideKind::open && !taken(d, face)) add(d, face, -1);
+      }
+  });
+  return ports;
 }
 
 }  // namespace
@@ -108,7 +140,11 @@ SceneWalls<D> make_walls(const Scene& scene, const Grid<D>& grid,
     if (std::find(open_gates.begin(), open_gates.end(), gate.name) != open_gates.end()) continue;
     for (const auto& [d, face] : faces_on(grid, gate.line)) walls.close(d, face, false);
   }
-  SceneWalls<D> both{walls, walls};
+  SceneWalls<D> both{walls, walls, find_ports(scene, grid, walls)};
+  for (const PortFace& port : both.ports) {
+    both.water.make_port(port.d, port.face);
+    if (port.reservoir < 0) both.soil.make_port(port.d, port.face);
+  }
   for (const Body& body : scene.bodies) {
     if (!body.fixed) continue;
     const auto inside = cells_in(grid, body.region);

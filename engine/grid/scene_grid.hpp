@@ -13,10 +13,18 @@ namespace quicksand {
 template <int D>
 Grid<D> make_grid(const Scene& scene);
 
+/// A face of the boundary through which points enter and leave.
+struct PortFace {
+  int d = 0, face = 0;
+  int inward = 1;      ///< +1 or −1 along d
+  int reservoir = -1;  ///< index into Scene::reservoirs; −1: an open side
+};
+
 template <int D>
 struct SceneWalls {
-  Walls<D> water;  ///< blocks, thin walls, closed gates, domain sides
-  Walls<D> soil;   ///< the same, and the outside of fixed soil bodies
+  Walls<D> water;  ///< blocks, thin walls, closed gates, domain sides; ports at reservoirs and open sides
+  Walls<D> soil;   ///< the same without the reservoirs' ports, and the outside of fixed soil bodies
+  std::vector<PortFace> ports;
 };
 /// All gates but `open_gates` are closed.
 template <int D>

@@ -3,6 +3,10 @@
 namespace quicksand {
 namespace {
 
+/// Per axis and face: 0 passes, 1 mirrors, 2 mirrors and changes the sign of tangential components.
+template <int D>
+using Mirrors = std::array<std::vector<std::uint8_t>, D>;
+
 /// A walk of at most one cell along each axis from a home cell, mirrored back at closed faces.
 template <int D>
 struct Walk {
@@ -18,7 +22,7 @@ struct Walk {
 };
 
 template <int D>
-Walk<D> walk(const Grid<D>& grid, const std::array<std::vector<std::uint8_t>, D>& closed, int home,
+Walk<D> walk(const Grid<D>& grid, const Mirrors<D>& mirrors, int home,
              const std::array<int, D>& offset, const std::array<int, D>& order) {
   Walk<D> w;
   w.cell = home;
@@ -26,10 +30,10 @@ Walk<D> walk(const Grid<D>& grid, const std::array<std::vector<std::uint8_t>, D>
   for (int axis : order) {
     if (offset[axis] == 0) continue;
     const int face = offset[axis] > 0 ? w.cell + grid.stride[axis] : w.cell;
-    if (closed[axis][face]) {
+    if (mirrors[axis][face]) {
       w.mirrored[axis] = true;
       w.wall[axis] = face;
-      w.no_slip[axis] = closed[axis][face] == 2;
+      w.no_slip[axis] = mirrors[axis][face] == 2;
     } else {
       w.cell += offset[axis] * grid.stride[axis];
     }
@@ -40,17 +44,17 @@ Walk<D> walk(const Grid<D>& grid, const std::array<std::vector<std::uint8_t>, D>
 /// Direct if any order of the axes reaches the cell without a wall; otherwise the order that crosses
 /// `first` before the others, so that a component is mirrored tangentially at convex corners.
 template <int D>
-Walk<D> best_walk(const Grid<D>& grid, const std::array<std::vector<std::uint8_t>, D>& closed, int home,
+Walk<D> best_walk(const Grid<D>& grid, const Mirrors<D>& mirrors, int home,
                   const std::array<int, D>& offset, int first) {
   std::array<int, D> order;
   order[0] = first;
   for (int d = 0, k = 1; d < D; ++d)
     if (d != first) order[k++] = d;
-  const Walk<D> preferred = walk<D>(grid, closed, home, offset, order);
+  const Walk<D> preferred = walk<D>(grid, mirrors, home, offset, order);
   if (preferred.direct()) return preferred;
   std::sort(order.begin(), order.end());
   do {
-    const Walk<D> other = walk<D>(grid, closed, home, offset, order);
+    const Walk<D> other = walk<D>(grid, mirrors, home, offset, order);
     if (other.direct()) return other;
   } while (std::next_permutation(order.begin(), order.end()));
   return preferred;
@@ -60,14 +64,14 @@ Walk<D> best_walk(const Grid<D>& grid, const std::array<std::vector<std::uint8_t
 /// the weight, because it is also the one that misses the weight of the points that the corner replaces: a
 /// uniform filling stays uniform.
 template <int D>
-int fold_center(const Grid<D>& grid, const std::array<std::vector<std::uint8_t>, D>& closed, int home,
+int fold_center(const Grid<D>& grid, const Mirrors<D>& mirrors, int home,
                 const std::array<int, D>& offset) {
   std::array<int, D> order;
   for (int d = 0; d < D; ++d) order[d] = d;
   int landed = -1;
   bool agree = true;
   do {
-    const Walk<D> w = walk<D>(grid, closed, home, offset, order);
+    const Walk<D> w = walk<D>(grid, mirrors, home, offset, order);
     if (w.direct()) return w.cell;
     agree = agree && (landed < 0 || landed == w.cell);
     landed = w.cell;
@@ -81,7 +85,7 @@ template <int D>
 Walls<D>::Walls(const Grid<D>& grid) : blocked_(grid.count(), 1), fold_of_(grid.count(), -1) {
   for (auto& c : closed_) c.assign(grid.count(), 0);
   for (auto& c : separated_) c.assign(grid.count(), 0);
-  separated_next_ = separated_;
+  separated_next_ = port_ = separated_;
   for_each_cell(grid, [&](int i, const Cell<D>&) { blocked_[i] = 0; });
 }
 
@@ -89,6 +93,10 @@ template <int D>
 void Walls<D>::rebuild(const Grid<D>& grid) {
   folds_.clear();
   std::fill(fold_of_.begin(), fold_of_.end(), -1);
+  Mirrors<D> mirrors = port_;
+  for (int d = 0; d < D; ++d)
+    for (std::size_t i = 0; i < closed_[d].size(); ++i)
+      if (closed_[d][i]) mirrors[d][i] = closed_[d][i] == kNoSlip ? 2 : 1;
   for_each_cell(grid, [&](int home, const Cell<D>&) {
     CellFolds f;
     bool plain = true;
@@ -102,7 +110,7 @@ void Walls<D>::rebuild(const Grid<D>& grid) {
         offset[d] = q < 0 ? -1 : q > 1 ? 1 : 0;
         for (int a = 0; a < D; ++a)
           if (a != d) offset[a] = rest % 3 - 1, rest /= 3;
-        const Walk<D> w = best_walk<D>(grid, closed_, home, offset, d);
+        const Walk<D> w = best_walk<D>(grid, mirrors, home, offset, d);
         int position = q == 2 || q == 1 ? 1 : 0;  // which side of the reached cell the face is on
         Fold& fold = f.face[d][k];
         if (w.mirrored[d]) {
@@ -117,7 +125,7 @@ void Walls<D>::rebuild(const Grid<D>& grid) {
     for (int k = 0; k < kCells; ++k) {
       std::array<int, D> offset{};
       for (int a = 0, rest = k; a < D; ++a, rest /= 3) offset[a] = rest % 3 - 1;
-      f.center[k] = fold_center<D>(grid, closed_, home, offset);
+      f.center[k] = fold_center<D>(grid, mirrors, home, offset);
     }
     if (plain) return;
     fold_of_[home] = static_cast<std::int32_t>(folds_.size());

@@ -5,6 +5,8 @@
 // that face on the point's own side: masses as they are, normal components with the sign changed,
 // tangential ones as they are (slip) or with the sign changed (no slip). Walls of no thickness and
 // blocks are treated alike, because visibility is asked cell by cell, from the point's own cell outwards.
+// A port is a face of the boundary that can be open: it mirrors too, but keeps the sign of the normal
+// component while it is open, so that what flows through it continues unchanged beyond.
 
 #include <algorithm>
 #include <array>
@@ -38,12 +40,27 @@ class Walls {
   explicit Walls(const Grid<D>& grid);
 
   bool closed(int d, int face) const { return closed_[d][face] != 0; }
-  bool no_slip(int d, int face) const { return closed_[d][face] == 2; }
+  bool no_slip(int d, int face) const { return closed_[d][face] == kNoSlip; }
+  /// A plane of symmetry: the normal velocity is zero both ways.
+  bool symmetry(int d, int face) const { return closed_[d][face] == kSymmetry; }
   /// A face closed twice is no-slip if either is.
   void close(int d, int face, bool no_slip) {
-    closed_[d][face] = std::max<std::uint8_t>(closed_[d][face], no_slip ? 2 : 1);
+    closed_[d][face] = std::max(closed_[d][face], no_slip ? kNoSlip : kSlip);
   }
-  void open(int d, int face) { closed_[d][face] = 0; }
+  void close_as_symmetry(int d, int face) { closed_[d][face] = kSymmetry; }
+
+  void open(int d, int face) { closed_[d][face] = kOpen; }
+
+  bool port(int d, int face) const { return port_[d][face] != 0; }
+  /// Makes a face of the boundary a port, open at first.
+  void make_port(int d, int face) {
+    port_[d][face] = 1;
+    set_port_open(d, face, true);
+  }
+  void set_port_open(int d, int face, bool open) {
+    closed_[d][face] = open ? kOpen : kSlip;
+    separated_[d][face] = separated_next_[d][face] = open;
+  }
   /// A cell that the phase can never enter (block, outside of the domain).
   bool blocked(int cell) const { return blocked_[cell] != 0; }
   void block(int cell) { blocked_[cell] = 1; }
@@ -61,8 +78,9 @@ class Walls {
   const CellFolds* folds(int cell) const { return fold_of_[cell] < 0 ? nullptr : &folds_[fold_of_[cell]]; }
 
  private:
-  std::array<std::vector<std::uint8_t>, D> closed_;  ///< 0 open, 1 slip, 2 no slip
-  std::array<std::vector<std::uint8_t>, D> separated_, separated_next_;
+  static constexpr std::uint8_t kOpen = 0, kSlip = 1, kNoSlip = 2, kSymmetry = 3;
+  std::array<std::vector<std::uint8_t>, D> closed_;  ///< one of the above per face
+  std::array<std::vector<std::uint8_t>, D> separated_, separated_next_, port_;
   std::vector<std::uint8_t> blocked_;
   std::vector<std::int32_t> fold_of_;
   std::vector<CellFolds> folds_;

@@ -32,6 +32,9 @@ struct PointSet {
   }
 };
 
+/// Body of a point that came in through the boundary.
+inline constexpr std::int32_t kInflowBody = -1;
+
 template <int D>
 struct WaterPoints : PointSet<D> {};
 
@@ -43,5 +46,25 @@ struct SoilPoints : PointSet<D> {
   std::vector<double> preconsolidation;  ///< Pa; empty unless a law of the scene keeps it
   std::vector<std::int32_t> soil;        ///< index of the material
 };
+
+/// Calls f(array) for every array of a set.
+template <int D, class F>
+void for_arrays(WaterPoints<D>& set, F&& f) {
+  f(set.x), f(set.v), f(set.start), f(set.mass), f(set.body);
+}
+template <int D, class F>
+void for_arrays(SoilPoints<D>& set, F&& f) {
+  f(set.x), f(set.v), f(set.start), f(set.mass), f(set.body);
+  f(set.porosity), f(set.stress), f(set.plastic_strain), f(set.soil);
+}
+
+/// Removes point p; the last point takes its place.
+template <class Set>
+void erase_point(Set& set, std::size_t p) {
+  for_arrays(set, [&](auto& array) {
+    array[p] = array.back();
+    array.pop_back();
+  });
+}
 
 }  // namespace quicksand

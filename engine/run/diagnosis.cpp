@@ -40,7 +40,8 @@ Failure describe(const Scene& scene, const State<D>& s, const std::string& what,
   Failure f{"diverged", what + " at t = " + number(s.time) + " s", s.time, {}};
   if (worst.found) {
     f.message += worst.soil ? ", first in soil" : ", first in water";
-    f.message += " of body '" + scene.bodies[worst.body].name + "' near (";
+    f.message += worst.body >= 0 ? " of body '" + scene.bodies[worst.body].name + "'" : " that flowed in";
+    f.message += " near (";
     for (int d = 0; d < D; ++d) {
       f.place[d] = worst.x[d];
       f.message += (d ? ", " : "") + number(worst.x[d]);

@@ -35,7 +35,8 @@ std::vector<int> connected_water(const State<D>& s, int seed, std::vector<char>&
   return found;
 }
 
-/// Elevation of the free surface of connected water, m.
+/// Elevation of the free surface of connected water, m; without one, the level of the highest reservoir it
+/// touches, or else its own top.
 template <int D>
 double water_level(const State<D>& s, const std::vector<int>& cells) {
   const Vec<D>& g = s.constants.gravity;
@@ -43,15 +44,19 @@ double water_level(const State<D>& s, const std::vector<int>& cells) {
   for (int d = 1; d < D; ++d)
     if (std::abs(g[d]) > std::abs(g[up])) up = d;
   const int side = g[up] > 0 ? 0 : 1;
-  double surface = -std::numeric_limits<double>::infinity(), highest = surface;
+  double surface = -std::numeric_limits<double>::infinity(), highest = surface, reservoir = surface;
   for (int i : cells) {
     const double z = elevation<D>(g, s.grid.center(s.grid.cell(i)));
     highest = std::max(highest, z + 0.5 * s.grid.h);
+    for (int d = 0; d < D; ++d)
+      for (int f : {i, i + s.grid.stride[d]})
+        if (submerged(s, d, f))
+          reservoir = std::max(reservoir, s.reservoirs[port_at(s, d, f)->reservoir].level(s.time));
     const int face = i + side * s.grid.stride[up], other = i + (2 * side - 1) * s.grid.stride[up];
-    if (s.water_walls.closed(up, face) || s.cell[other].unknown >= 0) continue;
+    if (s.water_walls.closed(up, face) || s.cell[other].unknown >= 0 || submerged(s, up, face)) continue;
     surface = std::max(surface, z + surface_distance(s.cell[i].depth, s.cell[other].depth) * s.grid.h);
   }
-  return std::isfinite(surface) ? surface : highest;
+  return std::isfinite(surface) ? surface : std::isfinite(reservoir) ? reservoir : highest;
 }
 
 /// Whether the soil point `upper` does not rest on `lower`, the next one down its column: a gap or a wall
@@ -114,7 +119,7 @@ void set_initial_pressure(const Scene& scene, State<D>& s) {
   for_each_cell(s.grid, [&](int i, const Cell<D>&) {
     if (s.cell[i].unknown < 0 || seen[i]) return;
     const std::vector<int> cells = connected_water(s, i, seen);
-    const double level = water_level(s, cells);
+    const double level = scene.initial.water_table.value_or(water_level(s, cells));
     for (int c : cells) {
       const double depth = level - elevation<D>(s.constants.gravity, s.grid.center(s.grid.cell(c)));
       s.pressure[c] = scene.initial.pressure == InitialPressure::uniform ? scene.initial.uniform_pressure

@@ -41,6 +41,9 @@ void LedgerKeeper<D>::add(const State<D>& s, const StepReport<D>& step) {
   l.clipped_points = s.interventions.clipped_points;
   l.clamped_values = s.interventions.clamped_values;
   l.cut_steps = s.interventions.cut_steps;
+  l.water_in += step.exchange.water_in;
+  l.water_out += step.exchange.water_out;
+  l.soil_out += step.exchange.soil_out;
   const double moving = step.moving_mass;
   double residual = 0, driving = 0;
   // About an axis what points radially has no resultant: the momentum upwards is balanced alone.
@@ -51,9 +54,10 @@ void LedgerKeeper<D>::add(const State<D>& s, const StepReport<D>& step) {
     l.impulse_walls[d] += step.impulse_walls[d];
     l.impulse_loads[d] += step.impulse_loads[d];
     l.impulse_surface[d] += step.impulse_surface[d];
+    l.impulse_flow[d] += step.exchange.momentum[d];
     l.momentum_change[d] = step.momentum[d] - start_momentum_[d];
     const double open = l.momentum_change[d] - l.impulse_gravity[d] - l.impulse_walls[d] -
-                        l.impulse_surface[d] - l.impulse_loads[d];
+                        l.impulse_surface[d] - l.impulse_loads[d] - l.impulse_flow[d];
     residual += open * open;
   }
   driving_impulse_ += std::sqrt(driving);
@@ -71,7 +75,9 @@ void LedgerKeeper<D>::measure(const State<D>& s, const StepReport<D>& step) {
   l.energy_potential = potential(s);
   if (l.water_volume_initial > 0)
     l.water_volume_drift_max = std::max(
-        l.water_volume_drift_max, std::abs(l.water_volume - l.water_volume_initial) / l.water_volume_initial);
+        l.water_volume_drift_max,
+        std::abs(l.water_volume - l.water_volume_initial - (l.water_in - l.water_out) / s.constants.water_density) /
+            l.water_volume_initial);
 }
 
 template class LedgerKeeper<2>;

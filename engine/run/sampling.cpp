@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "engine/grid/scene_grid.hpp"
 #include "engine/grid/stencil.hpp"
 #include "engine/step/phases.hpp"
 
@@ -95,6 +96,24 @@ double water_volume(const State<D>& s) {
   });
 }
 
+template <int D>
+double flow_through(const State<D>& s, const Segment& line) {
+  double flow = 0;
+  for (const auto& [d, face] : faces_on(s.grid, line)) {
+    const FaceFlow& f = s.flow[d][face];
+    if (!f.wet || s.water_walls.closed(d, face)) continue;
+    // At the water surface only the part of the face below it passes water.
+    double part = 0;
+    for (int cell : {face - s.grid.stride[d], face})
+      part += 0.5 * std::clamp(0.5 + s.cell[cell].depth, 0.0, 1.0);
+    if (submerged(s, d, face)) part = 1;
+    flow += part * f.n * f.water * s.grid.face_area() * s.grid.face_radius(d, face);
+  }
+  return flow;
+}
+
+template double flow_through<2>(const State<2>&, const Segment&);
+template double flow_through<3>(const State<3>&, const Segment&);
 template double pressure_at<2>(const State<2>&, const Vec<2>&);
 template double pressure_at<3>(const State<3>&, const Vec<3>&);
 template double head_at<2>(const State<2>&, const Vec<2>&, double);

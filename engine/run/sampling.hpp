@@ -28,4 +28,8 @@ double porosity_at(const State<D>& s, const Vec<D>& x);
 template <int D>
 double water_volume(const State<D>& s);
 
+/// Discharge of water through the faces on a segment along +x, +y or +z, m³/s (per metre in the plane).
+template <int D>
+double flow_through(const State<D>& s, const Segment& line);
+
 }  // namespace quicksand

@@ -22,6 +22,7 @@ Constants<D> make_constants(const Scene& scene, const Grid<D>& grid) {
   c.pressure_tolerance = scene.numerics.pressure_tolerance;
   c.drift_time = scene.numerics.drift_time;
   c.explicit_pressure = scene.numerics.pressure == PressureScheme::explicit_scheme;
+  c.points_per_cell = scene.numerics.points_per_cell;
   for (const auto& [name, soil] : scene.soils) {
     c.soils.push_back(SoilMaterial::from(soil, scene.water));
     c.step_limits.emplace_back(c.soils.back(), c.water_density, c.water_compliance, grid.h);
@@ -56,6 +57,49 @@ SurfaceLoad<D> make_load(const Scene& scene, const Load& load, const State<D>& s
   return result;
 }
 
+template <int D>
+void make_ports(const std::vector<PortFace>& faces, State<D>& s) {
+  if (faces.empty()) return;
+  for (auto& of_face : s.port_of) of_face.assign(s.grid.count(), -1);
+  double g2 = 0;
+  for (double c : s.constants.gravity) g2 += c * c;
+  std::vector<char> near(s.blocks.count(), 0);
+  for (const PortFace& f : faces) {
+    Port<D> port{.d = f.d, .face = f.face, .inward = f.inward, .reservoir = f.reservoir};
+    const Cell<D> cell = s.grid.cell(f.inward > 0 ? f.face : f.face - s.grid.stride[f.d]);
+    Vec<D> middle = s.grid.center(cell);
+    middle[f.d] -= 0.5 * f.inward * s.grid.h;
+    if (g2 > 0)
+      for (int d = 0; d < D; ++d) port.elevation -= s.constants.gravity[d] / std::sqrt(g2) * middle[d];
+    s.port_of[f.d][f.face] = static_cast<std::int32_t>(s.ports.size());
+    s.ports.push_back(port);
+    for (int k = 0; k < power(3, D); ++k) {
+      Cell<D> c = cell;
+      for (int d = 0, rest = k; d < D; ++d, rest /= 3)
+        c[d] = std::clamp(c[d] + rest % 3 - 1, 0, s.grid.cells[d] - 1);
+      near[s.blocks.block_of(c)] = 1;
+    }
+  }
+  for (int b = 0; b < s.blocks.count(); ++b)
+    if (near[b]) s.port_blocks.push_back(b);
+}
+
+/// Levels that reservoirs go to in a stage; those it does not name stay where they are.
+template <int D>
+void set_levels(const Scene& scene, const Stage& stage, State<D>& s) {
+  if (s.reservoirs.empty())
+    for (const Reservoir& r : scene.reservoirs) s.reservoirs.push_back({.from = r.head, .to = r.head});
+  for (std::size_t r = 0; r < scene.reservoirs.size(); ++r) {
+    const auto head = stage.heads.find(scene.reservoirs[r].name);
+    if (head == stage.heads.end()) continue;
+    ReservoirState& now = s.reservoirs[r];
+    now.from = now.level(s.time);
+    now.to = head->second;
+    now.start = s.time;
+    now.ramp = stage.heads_ramp;
+  }
+}
+
 }  // namespace
 
 template <int D>
@@ -80,6 +124,7 @@ State<D> make_state(const Scene& scene) {
     if (load.kind == Load::Kind::traction) s.loads.push_back(make_load<D>(scene, load, s));
   enter_stage(scene, scene.stages.front(), s);
   if (s.fixed.size()) measure_fixed(s);
+  set_ports(s);
   points_to_faces(s);
   find_surface(s);
   set_initial_pressure(scene, s);
@@ -98,6 +143,9 @@ void enter_stage(const Scene& scene, const Stage& stage, State<D>& s) {
   s.water_walls = std::move(walls.water);
   s.soil_walls = std::move(walls.soil);
   s.volume = kernel_volumes<D>(s.grid, s.water_walls, scene.numerics.points_per_cell);
+  if (s.ports.empty()) make_ports(walls.ports, s);
+  for (const Port<D>& port : s.ports) s.water_walls.set_port_open(port.d, port.face, port.open);
+  set_levels(scene, stage, s);
   for (std::size_t i = 0, k = 0; i < scene.loads.size(); ++i) {
     if (scene.loads[i].kind != Load::Kind::traction) continue;
     SurfaceLoad<D>& load = s.loads[k++];

@@ -97,6 +97,8 @@ void append_probe(const State<D>& s, const Probe& probe, std::vector<double>& ou
 
 template <int D>
 Watch<D>::Watch(const Scene& scene) : scene_(scene) {
+  ports_ = !scene.reservoirs.empty();
+  for (const Side& side : scene.domain.sides) ports_ = ports_ || side.kind == SideKind::open;
   for (std::size_t b = 0; b < scene.bodies.size(); ++b)
     if (scene.bodies[b].kind != BodyKind::water && !scene.bodies[b].fixed)
       moving_soil_.push_back(static_cast<int>(b));
@@ -125,6 +127,12 @@ std::vector<SeriesInfo> Watch<D>::info() const {
     const Quantity q = quantity(probe.quantity);
     all.push_back({"probe." + probe.name, q.unit, q.components});
   }
+  for (const Section& section : scene_.output.sections)
+    all.push_back({"section." + section.name, "m³/s", 1});
+  for (const Reservoir& reservoir : scene_.reservoirs) {
+    all.push_back({"reservoir." + reservoir.name + ".level", "m", 1});
+    all.push_back({"reservoir." + reservoir.name + ".inflow", "m³/s", 1});
+  }
   for (int b : moving_soil_) {
     all.push_back({"body." + scene_.bodies[b].name + ".rise", "m", 1});
     all.push_back({"body." + scene_.bodies[b].name + ".largest_displacement", "m", 1});
@@ -132,6 +140,12 @@ std::vector<SeriesInfo> Watch<D>::info() const {
   all.push_back({"ledger.water_volume", "m³", 1});
   all.push_back({"ledger.water_mass", "kg", 1});
   all.push_back({"ledger.solid_mass", "kg", 1});
+  if (ports_) {
+    all.push_back({"ledger.water_in", "kg", 1});
+    all.push_back({"ledger.water_out", "kg", 1});
+    all.push_back({"ledger.soil_out", "kg", 1});
+    all.push_back({"ledger.impulse_flow", "N·s", 3});
+  }
   all.push_back({"ledger.energy", "J", 1});
   all.push_back({"ledger.energy_kinetic", "J", 1});
   all.push_back({"ledger.energy_potential", "J", 1});
@@ -155,14 +169,20 @@ template <int D>
 std::vector<double> Watch<D>::sample(const State<D>& s, const StepReport<D>& step, const Ledger& l) {
   std::vector<double> out;
   for (const Probe& probe : scene_.output.probes) append_probe(s, probe, out);
+  for (const Section& section : scene_.output.sections) out.push_back(flow_through(s, section.line));
+  for (const ReservoirState& r : s.reservoirs) out.insert(out.end(), {r.level(s.time), r.inflow});
   for (int b : moving_soil_) {
     const Rise r = rise_of(s, b);
     out.push_back(r.mean);
     out.push_back(r.largest);
   }
   const double energy = l.energy_kinetic + l.energy_potential + l.energy_strain;
-  out.insert(out.end(), {l.water_volume, l.water_mass, l.solid_mass, energy, l.energy_kinetic,
-                         l.energy_potential, l.energy_strain});
+  out.insert(out.end(), {l.water_volume, l.water_mass, l.solid_mass});
+  if (ports_) {
+    out.insert(out.end(), {l.water_in, l.water_out, l.soil_out});
+    out.insert(out.end(), l.impulse_flow.begin(), l.impulse_flow.end());
+  }
+  out.insert(out.end(), {energy, l.energy_kinetic, l.energy_potential, l.energy_strain});
   for (int d = 0; d < 3; ++d) out.push_back(d < D ? step.momentum[d] : 0);
   for (const auto* impulse : {&l.impulse_gravity, &l.impulse_walls, &l.impulse_surface, &l.impulse_loads})
     out.insert(out.end(), impulse->begin(), impulse->end());

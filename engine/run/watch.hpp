@@ -41,6 +41,7 @@ class Watch {
   const Scene& scene_;
   std::vector<int> moving_soil_;  ///< bodies
   std::vector<HeaveReport> heave_;
+  bool ports_ = false;         ///< water can enter or leave
   double probe_distance_ = 0;  ///< m, along gravity, between the probes of the heave watch
 };
 

@@ -32,31 +32,20 @@ void check_supported(const Scene& scene, Faults& faults) {
     if (used) faults.push_back({pointer, what + " is not supported yet"});
   };
   const Domain& domain = scene.domain;
-  constexpr const char* sides[] = {"left", "right", "bottom", "top", "front", "back"};
-  for (std::size_t k = 0; k < domain.sides.size(); ++k) {
-    const std::string pointer = std::string("/domain/sides/") + sides[k] + "/kind";
-    refuse(domain.sides[k].kind == SideKind::open, pointer, "an open side");
-    refuse(domain.sides[k].kind == SideKind::symmetry, pointer, "a symmetry side");
-  }
   for (const auto& [name, soil] : scene.soils) {
     refuse(soil.permeability.law == PermeabilityLaw::ergun, at_soil(name, "/permeability/law"),
            "permeability law ergun");
     refuse(soil.permeability.law == PermeabilityLaw::power, at_soil(name, "/permeability/law"),
            "permeability law power");
   }
-  refuse(scene.initial.water_table && scene.gravity != Vec3{0, 0, 0}, "/initial/water_table",
-         "a given water table");
-  refuse(!scene.reservoirs.empty(), "/reservoirs", "a reservoir");
   for (std::size_t k = 0; k < scene.loads.size(); ++k)
     refuse(scene.loads[k].kind == Load::Kind::plate, at_index("loads", k, "/kind"), "a plate load");
   for (std::size_t k = 0; k < scene.stages.size(); ++k) {
     const Stage& stage = scene.stages[k];
-    refuse(!stage.heads.empty(), at_index("stages", k, "/heads"), "a change of heads");
     refuse(!stage.remove_bodies.empty(), at_index("stages", k, "/remove_bodies"), "removing bodies");
     refuse(stage.damping > 0, at_index("stages", k, "/damping"), "damping");
     refuse(stage.quasi_static, at_index("stages", k, "/quasi_static"), "quasi_static");
   }
-  refuse(!scene.output.sections.empty(), "/output/sections", "a section");
   refuse(scene.numerics.kernel == Kernel::linear, "/numerics/kernel", "kernel linear");
   refuse(scene.numerics.transfer == Transfer::apic, "/numerics/transfer", "transfer apic");
 }

@@ -37,6 +37,26 @@ Supports<D> support_impulses(const State<D>& s, double dt, double pic);
 template <int D>
 void faces_to_points(State<D>& s, double dt, StepReport<D>& report);
 
+/// What the outside of every port is now: pressure, open or shut → `ports`, `water_walls`.
+template <int D>
+void set_ports(State<D>& s);
+/// Points that passed a port in this step leave, and those that the flow brings in are made.
+template <int D>
+void pass_ports(State<D>& s, StepReport<D>& report);
+
+/// Port of a face, or null.
+template <int D>
+const Port<D>* port_at(const State<D>& s, int d, int face) {
+  if (s.ports.empty() || s.port_of[d][face] < 0) return nullptr;
+  return &s.ports[s.port_of[d][face]];
+}
+/// Whether a face has a reservoir's water on its other side.
+template <int D>
+bool submerged(const State<D>& s, int d, int face) {
+  const Port<D>* port = port_at(s, d, face);
+  return port && port->submerged();
+}
+
 /// Momentum, energies, mass and largest speeds of the points as they are → `report`.
 template <int D>
 void measure_motion(const State<D>& s, StepReport<D>& report);

@@ -13,11 +13,28 @@ constexpr double kDriftDeadBand = 0.02;
 /// Largest part of a cell's volume that may be fed back per drift time.
 constexpr double kDriftLimit = 0.2;
 
-double drift_rate(double excess, double drift_time) {
-  if (drift_time <= 0) return 0;
-  const double beyond =
-      excess > 0 ? std::max(0.0, excess - kDriftDeadBand) : std::min(0.0, excess + kDriftDeadBand);
-  return std::clamp(beyond, -kDriftLimit, kDriftLimit) / drift_time;
+/// Cells that the water passes while drift is fed back. Drift comes from motion, so slow seepage gets a
+/// feedback as slow as itself: a quicker one would turn the unevenness of the points into flow.
+constexpr double kDriftCells = 4;
+
+/// Largest speed of the water at the faces of a cell, m/s, at the start of the step.
+template <int D>
+double speed_in(const State<D>& s, int cell) {
+  double speed = 0;
+  for (int d = 0; d < D; ++d)
+    for (int face : {cell, cell + s.grid.stride[d]})
+      speed = std::max(speed, std::abs(s.flow[d][face].water_old));
+  return speed;
+}
+
+/// 1/s
+template <int D>
+double drift_rate(const State<D>& s, int cell) {
+  const double excess = s.cell[cell].excess;
+  if (s.constants.drift_time <= 0 || std::abs(excess) <= kDriftDeadBand) return 0;
+  const double beyond = excess - std::copysign(kDriftDeadBand, excess);
+  const double rate = std::min(1 / s.constants.drift_time, speed_in(s, cell) * s.grid.inverse_h / kDriftCells);
+  return std::clamp(beyond, -kDriftLimit, kDriftLimit) * rate;
 }
 
 template <int D>
@@ -45,7 +62,7 @@ void assemble(State<D>& s, PressureSystem<D>& m, double dt) {
       const double radius = kAxial ? s.grid.cell_radius(i) : 1;
       const double storage = radius * c.n * s.constants.water_compliance / dt;
       double diagonal = storage;
-      double rhs = storage * s.pressure[i] + radius * drift_rate(c.excess, s.constants.drift_time);
+      double rhs = storage * s.pressure[i] + radius * drift_rate(s, i);
       for (int d = 0; d < D; ++d) {
         m.upper[d][r] = m.lower[d][r] = -1;
         m.coupling[d][r] = 0;
@@ -57,6 +74,11 @@ void assemble(State<D>& s, PressureSystem<D>& m, double dt) {
           rhs += (1 - 2 * side) * at * f.flux() * inverse_h;
           const double beta = at * f.flux_response() * inverse_h2;
           const CellState& o = s.cell[other];
+          if (const Port<D>* port = port_at(s, d, face)) {
+            diagonal += 2 * beta;  // half a cell to the face
+            rhs += 2 * beta * port->pressure;
+            continue;
+          }
           if (o.unknown < 0) {
             diagonal += beta / surface_distance(c.depth, o.depth);
             continue;

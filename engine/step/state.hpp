@@ -5,6 +5,7 @@
 // compression positive), vs vw velocities of grains and water, q = φ vs + n vw flux of the mixture,
 // R drag (N·s/m⁴), h cell edge, V = h^D (about an axis times the radius).
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -96,6 +97,7 @@ struct Constants {
   double pressure_tolerance = 1e-6;
   double drift_time = 0;           ///< s; 0: no feedback
   bool explicit_pressure = false;  ///< pressure advanced from the last one instead of solved for
+  int points_per_cell = 2;         ///< per axis, of points that enter
   std::vector<SoilMaterial> soils;
   std::vector<StepLimit> step_limits;  ///< per soil
 };
@@ -108,6 +110,45 @@ struct SurfaceLoad {
   Vec<D> traction{};           ///< Pa at full load
   double start = 0, ramp = 0;  ///< s
   bool active = false;
+};
+
+/// A face of the boundary through which water enters and leaves; engine/step/ports.cpp.
+template <int D>
+struct Port {
+  int d = 0, face = 0;
+  int inward = 1;        ///< +1 or −1 along d
+  int reservoir = -1;    ///< index; −1: an open side, which grains leave through too
+  double elevation = 0;  ///< m, of the face's middle against gravity
+  double pressure = 0;   ///< Pa, at the face from outside; 0 above the reservoir's level
+  bool below_level = false;
+  bool open = true;      ///< seepage faces shut while water would enter
+  double owed = 0;       ///< m³, volume that flowed in and that points have not carried in yet
+  bool submerged() const { return below_level; }
+};
+
+/// Level of a reservoir and what has come in from it.
+struct ReservoirState {
+  double from = 0, to = 0, start = 0, ramp = 0;  ///< m, m, s, s
+  double mass_in = 0;                            ///< kg, net
+  double inflow = 0;                             ///< m³/s, in the last step
+  double level(double t) const {
+    return ramp > 0 ? from + (to - from) * std::clamp((t - start) / ramp, 0.0, 1.0) : to;
+  }
+};
+
+/// A water point that is partly outside: its share of the lattice, one spacing wide, reaches over a port.
+struct Straddler {
+  std::uint32_t point = 0;
+  int port = 0;
+  double depth = 0;      ///< spacings, of the middle of the whole share behind the port; −½ … ½
+  double full_mass = 0;  ///< kg, when it is inside
+};
+
+/// What entered and left through ports.
+template <int D>
+struct Exchange {
+  double water_in = 0, water_out = 0, soil_out = 0;  ///< kg
+  Vec<D> momentum{};                                 ///< N·s, of what came in less what left
 };
 
 /// Parts of a step whose wall time is kept.
@@ -129,6 +170,11 @@ struct State {
   BlockList soil_blocks, water_blocks;
   KernelVolumes<D> volume;
   std::vector<SurfaceLoad<D>> loads;
+  std::vector<Port<D>> ports;
+  std::vector<ReservoirState> reservoirs;
+  std::vector<Straddler> straddlers;
+  std::vector<int> port_blocks;  ///< blocks from which a point can reach a port in one step
+  std::array<std::vector<std::int32_t>, D> port_of;  ///< per face, index into ports or −1; empty without ports
 
   std::array<std::vector<FaceSums>, D> sums;
   std::array<std::vector<FaceImage>, D> image;

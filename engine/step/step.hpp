@@ -15,6 +15,7 @@ struct StepReport {
   Vec<D> momentum{};                                           ///< N·s, Σ m v of all points after the step
   double moving_mass = 0;                                      ///< kg, of all points that move
   Vec<D> impulse_walls{}, impulse_surface{}, impulse_loads{};  ///< N·s in this step
+  Exchange<D> exchange;                                        ///< through ports, in this step
   double kinetic = 0, strain = 0;                              ///< J
   double soil_limit = 0;  ///< s, smallest stable step of any soil point; infinite without
   /// s, smallest StepLimit::fast_wave of any soil point; infinite unless the pressure is explicit

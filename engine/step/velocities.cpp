@@ -14,6 +14,10 @@ double pressure_gradient(const State<D>& s, const std::vector<double>& inner, in
   if (s.water_walls.closed(d, face))
     return a.unknown >= 0 || b.unknown >= 0 ? s.constants.water_density * s.constants.gravity[d] : 0;
   const double inverse_h = s.grid.inverse_h;
+  if (const Port<D>* port = port_at(s, d, face)) {
+    const double inside = s.pressure[port->inward > 0 ? high : low];  // 0 in air
+    return port->inward * (inside - port->pressure) * 2 * inverse_h;
+  }
   if (a.unknown >= 0 && b.unknown >= 0) return (inner[high] - inner[low]) * inverse_h;
   if (a.unknown >= 0) return -s.pressure[low] * inverse_h / surface_distance(a.depth, b.depth);
   if (b.unknown >= 0) return s.pressure[high] * inverse_h / surface_distance(b.depth, a.depth);
@@ -65,7 +69,7 @@ void solve_soil(const Balance& b, double dt, FaceFlow& f) {
 /// which may have grains on both sides; an axis).
 template <int D>
 int leaving_direction(const State<D>& s, int d, int face) {
-  if (s.grid.on_axis(d, face)) return 0;
+  if (s.grid.on_axis(d, face) || s.soil_walls.symmetry(d, face)) return 0;
   const bool low = s.soil_walls.blocked(face - s.grid.stride[d]), high = s.soil_walls.blocked(face);
   return low == high ? 0 : low ? 1 : -1;
 }
@@ -91,9 +95,11 @@ void predict_face(State<D>& s, int d, int face, double dt) {
   const bool soil = sums.soil_mass > kMassCutoff * rho * volume;
   const bool water_open = !s.water_walls.closed(d, face);
   const bool water = water_open && sums.water_mass > kMassCutoff * rho * volume;
-  f.wet = water_open && (s.cell[face].unknown >= 0 || s.cell[face - s.grid.stride[d]].unknown >= 0);
+  const bool soil_closed = s.soil_walls.closed(d, face);
+  f.wet = water_open && (s.cell[face].unknown >= 0 || s.cell[face - s.grid.stride[d]].unknown >= 0 ||
+                         submerged(s, d, face));
   if (!soil && !water && !f.wet) {
-    s.soil_walls.set_separated(d, face, false);
+    if (soil_closed) s.soil_walls.set_separated(d, face, false);
     return;
   }
 
@@ -131,7 +137,7 @@ void predict_face(State<D>& s, int d, int face, double dt) {
   }
 
   bool held = false;
-  if (soil && s.soil_walls.closed(d, face)) {
+  if (soil && soil_closed) {
     // Contact, one-sided: grains stay on the wall while what acts on them, with the last pressure
     // gradient, presses them to it.
     FaceFlow trial = f;
@@ -142,7 +148,7 @@ void predict_face(State<D>& s, int d, int face, double dt) {
     const double leaving = trial.soil - trial.soil_response * pressure_gradient(s, d, face);
     held = !(leaving * leaving_direction(s, d, face) > 0);
   }
-  s.soil_walls.set_separated(d, face, soil && s.soil_walls.closed(d, face) && !held);
+  if (soil_closed) s.soil_walls.set_separated(d, face, soil && !held);
   f.soil_held = held;
   const bool moving_soil = soil && !held;
   if (b.water_mass > 0 && moving_soil)

@@ -330,8 +330,6 @@ const Mutation of_sense[] = {
 };
 
 const Mutation not_supported_yet[] = {
-    {"OpenSide", ADD("/domain/sides/top", R"({"kind":"open"})"), {"/domain/sides/top/kind"}},
-    {"SymmetrySide", ADD("/domain/sides/left", R"({"kind":"symmetry"})"), {"/domain/sides/left/kind"}},
     {"Ergun",
      ADD("/materials/soils/sand/permeability", R"({"law":"ergun","grain_size":5e-4})"),
      {"/materials/soils/sand/permeability/law"}},
@@ -340,18 +338,10 @@ const Mutation not_supported_yet[] = {
      {"/materials/soils/sand/permeability/law"}},
     {"LinearKernel", ADD("/numerics/kernel", R"("linear")"), {"/numerics/kernel"}},
     {"Apic", ADD("/numerics/transfer", R"("apic")"), {"/numerics/transfer"}},
-    {"WaterTable", ADD("/initial/water_table", "0.3"), {"/initial/water_table"}},
     {"Damping", ADD("/stages/0/damping", "0.2"), {"/stages/0/damping"}},
     {"SidewaysGravityWithK0", ADD("/gravity", "[1, -9.81]"), {"/initial/stress"}},
     {"QuasiStatic", ADD("/stages/0/quasi_static", "true"), {"/stages/0/quasi_static"}},
     {"RemoveBodies", ADD("/stages/1/remove_bodies", R"(["pond"])"), {"/stages/1/remove_bodies"}},
-    {"Reservoir",
-     ADD("/reservoirs", R"([{"name":"lake","line":{"from":[0,0],"to":[0,0.2]},"head":0.5}])"),
-     {"/reservoirs"}},
-    {"Section",
-     ADD("/output/sections",
-         R"([{"name":"cut","line":{"from":[0.3,0.12],"to":[0.6,0.12]},"quantity":"flow"}])"),
-     {"/output/sections"}},
     {"Plate",
      SET("/loads/0",
          R"({"name":"cover","kind":"plate","body":"sand","plate":{"from":[0.3,0.24],"to":[0.6,0.24]},"plate_velocity":[0,-1]})"),
