@@ -22,8 +22,8 @@ struct Walk {
 };
 
 template <int D>
-Walk<D> walk(const Grid<D>& grid, const Mirrors<D>& mirrors, int home,
-             const std::array<int, D>& offset, const std::array<int, D>& order) {
+Walk<D> walk(const Grid<D>& grid, const Mirrors<D>& mirrors, int home, const std::array<int, D>& offset,
+             const std::array<int, D>& order) {
   Walk<D> w;
   w.cell = home;
   w.wall.fill(-1);
@@ -44,8 +44,8 @@ Walk<D> walk(const Grid<D>& grid, const Mirrors<D>& mirrors, int home,
 /// Direct if any order of the axes reaches the cell without a wall; otherwise the order that crosses
 /// `first` before the others, so that a component is mirrored tangentially at convex corners.
 template <int D>
-Walk<D> best_walk(const Grid<D>& grid, const Mirrors<D>& mirrors, int home,
-                  const std::array<int, D>& offset, int first) {
+Walk<D> best_walk(const Grid<D>& grid, const Mirrors<D>& mirrors, int home, const std::array<int, D>& offset,
+                  int first) {
   std::array<int, D> order;
   order[0] = first;
   for (int d = 0, k = 1; d < D; ++d)
@@ -64,8 +64,7 @@ Walk<D> best_walk(const Grid<D>& grid, const Mirrors<D>& mirrors, int home,
 /// the weight, because it is also the one that misses the weight of the points that the corner replaces: a
 /// uniform filling stays uniform.
 template <int D>
-int fold_center(const Grid<D>& grid, const Mirrors<D>& mirrors, int home,
-                const std::array<int, D>& offset) {
+int fold_center(const Grid<D>& grid, const Mirrors<D>& mirrors, int home, const std::array<int, D>& offset) {
   std::array<int, D> order;
   for (int d = 0; d < D; ++d) order[d] = d;
   int landed = -1;

@@ -74,10 +74,10 @@ void LedgerKeeper<D>::measure(const State<D>& s, const StepReport<D>& step) {
   l.water_volume = water_volume(s);
   l.energy_potential = potential(s);
   if (l.water_volume_initial > 0)
-    l.water_volume_drift_max = std::max(
-        l.water_volume_drift_max,
-        std::abs(l.water_volume - l.water_volume_initial - (l.water_in - l.water_out) / s.constants.water_density) /
-            l.water_volume_initial);
+    l.water_volume_drift_max =
+        std::max(l.water_volume_drift_max, std::abs(l.water_volume - l.water_volume_initial -
+                                                    (l.water_in - l.water_out) / s.constants.water_density) /
+                                               l.water_volume_initial);
 }
 
 template class LedgerKeeper<2>;

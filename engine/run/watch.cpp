@@ -127,8 +127,7 @@ std::vector<SeriesInfo> Watch<D>::info() const {
     const Quantity q = quantity(probe.quantity);
     all.push_back({"probe." + probe.name, q.unit, q.components});
   }
-  for (const Section& section : scene_.output.sections)
-    all.push_back({"section." + section.name, "m³/s", 1});
+  for (const Section& section : scene_.output.sections) all.push_back({"section." + section.name, "m³/s", 1});
   for (const Reservoir& reservoir : scene_.reservoirs) {
     all.push_back({"reservoir." + reservoir.name + ".level", "m", 1});
     all.push_back({"reservoir." + reservoir.name + ".inflow", "m³/s", 1});

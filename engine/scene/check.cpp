@@ -31,7 +31,6 @@ void check_supported(const Scene& scene, Faults& faults) {
   const auto refuse = [&](bool used, const std::string& pointer, const std::string& what) {
     if (used) faults.push_back({pointer, what + " is not supported yet"});
   };
-  const Domain& domain = scene.domain;
   for (const auto& [name, soil] : scene.soils) {
     refuse(soil.permeability.law == PermeabilityLaw::ergun, at_soil(name, "/permeability/law"),
            "permeability law ergun");

@@ -84,8 +84,8 @@ class WaterPass {
     for (Port<D>& port : s_.ports) {
       const FaceFlow& f = s_.flow[port.d][port.face];
       if (port.submerged())
-        port.owed += dt_ * s_.grid.face_area() * s_.grid.face_radius(port.d, port.face) * port.inward * f.n *
-                     f.water;
+        port.owed +=
+            dt_ * s_.grid.face_area() * s_.grid.face_radius(port.d, port.face) * port.inward * f.n * f.water;
       else
         port.owed = 0;  // water only leaves
     }
@@ -222,9 +222,9 @@ class WaterPass {
         used_[lane_of(port, s_.water.x[s_.straddlers[i].point])] = 1;
       }
     const auto free = std::count(used_.begin(), used_.end(), 0);
-    const double full =
-        f.n * s_.constants.water_density * share(s_) * s_.grid.face_radius(port.d, port.face);
-    const double mass = s_.constants.water_density * port.owed / static_cast<double>(free ? free : here.size());
+    const double full = f.n * s_.constants.water_density * share(s_) * s_.grid.face_radius(port.d, port.face);
+    const double mass =
+        s_.constants.water_density * port.owed / static_cast<double>(free ? free : here.size());
     if (free) {
       for (int lane = 0; lane < lanes; ++lane)
         if (!used_[lane]) enter(k, lane, std::min(mass / full, 1.0) - 0.5, full);
@@ -283,11 +283,11 @@ void set_ports(State<D>& s) {
   for (Port<D>& port : s.ports) {
     const double level = port.reservoir < 0 ? port.elevation : s.reservoirs[port.reservoir].level(s.time);
     port.below_level = level > port.elevation;
-    // The reservoir is still: what flows in has turned head into speed, p = γ (H − z) − ½ ρw v²; what flows out
-    // loses its speed outside. Energy then never enters but with the water.
+    // The reservoir is still: what flows in has turned head into speed, p = γ (H − z) − ½ ρw v²; what flows
+    // out loses its speed outside. Energy then never enters but with the water.
     const double inflow = std::max(0.0, port.inward * s.flow[port.d][port.face].water);
-    port.pressure = std::max(0.0, weight * (level - port.elevation) -
-                                      0.5 * s.constants.water_density * inflow * inflow);
+    port.pressure =
+        std::max(0.0, weight * (level - port.elevation) - 0.5 * s.constants.water_density * inflow * inflow);
     const bool open = port.submerged() || seeps(s, port);
     if (open != port.open) s.water_walls.set_port_open(port.d, port.face, open);
     port.open = open;

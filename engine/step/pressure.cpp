@@ -33,7 +33,8 @@ double drift_rate(const State<D>& s, int cell) {
   const double excess = s.cell[cell].excess;
   if (s.constants.drift_time <= 0 || std::abs(excess) <= kDriftDeadBand) return 0;
   const double beyond = excess - std::copysign(kDriftDeadBand, excess);
-  const double rate = std::min(1 / s.constants.drift_time, speed_in(s, cell) * s.grid.inverse_h / kDriftCells);
+  const double rate =
+      std::min(1 / s.constants.drift_time, speed_in(s, cell) * s.grid.inverse_h / kDriftCells);
   return std::clamp(beyond, -kDriftLimit, kDriftLimit) * rate;
 }
 

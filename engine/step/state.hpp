@@ -121,8 +121,8 @@ struct Port {
   double elevation = 0;  ///< m, of the face's middle against gravity
   double pressure = 0;   ///< Pa, at the face from outside; 0 above the reservoir's level
   bool below_level = false;
-  bool open = true;      ///< seepage faces shut while water would enter
-  double owed = 0;       ///< m³, volume that flowed in and that points have not carried in yet
+  bool open = true;  ///< seepage faces shut while water would enter
+  double owed = 0;   ///< m³, volume that flowed in and that points have not carried in yet
   bool submerged() const { return below_level; }
 };
 
@@ -174,7 +174,8 @@ struct State {
   std::vector<ReservoirState> reservoirs;
   std::vector<Straddler> straddlers;
   std::vector<int> port_blocks;  ///< blocks from which a point can reach a port in one step
-  std::array<std::vector<std::int32_t>, D> port_of;  ///< per face, index into ports or −1; empty without ports
+  std::array<std::vector<std::int32_t>, D>
+      port_of;  ///< per face, index into ports or −1; empty without ports
 
   std::array<std::vector<FaceSums>, D> sums;
   std::array<std::vector<FaceImage>, D> image;

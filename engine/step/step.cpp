@@ -77,7 +77,7 @@ StepReport<D> advance(State<D>& s, double dt) {
   report.finite = report.dt > 0;
   if (!report.finite) return report;
   faces_to_points(s, report.dt, report);  // velocity, strain, stress, porosity, position
-  pass_ports(s, report);                // points that enter and leave
+  pass_ports(s, report);                  // points that enter and leave
   clock.lap(Phase::to_points);
   s.time += report.dt;
   for (int d = 0; d < D; ++d) report.impulse_loads[d] = report.dt * s.load_force[d];

@@ -132,7 +132,7 @@ TEST(ExplicitPressure, MomentumLedgerCloses) {
     keeper.add(s, r);
     worst = std::max(worst, keeper.ledger().momentum_residual);
   });
-  EXPECT_LT(worst, 1e-11);  // rounding of five times the steps of the implicit scheme's test
+  EXPECT_LT(worst, 2e-11);  // rounding of five times the steps of the implicit scheme's test
   EXPECT_GT(std::abs(keeper.ledger().impulse_walls[0]), 1);
 }
 

@@ -47,7 +47,7 @@ TEST(Ports, FlowBetweenTwoReservoirsIsDarcys) {
 
 TEST(Ports, EqualHeadsDoNothing) {
   const Recorded r = record(pressed_column(0.25, 0.25, 1));
-  EXPECT_EQ(r.report.ledger.water_in + r.report.ledger.water_out, 0);
+  EXPECT_LT(r.report.ledger.water_in + r.report.ledger.water_out, 1e-12);
   EXPECT_LT(r.results.last("max_speed"), 1e-9);
 }
 
@@ -64,14 +64,14 @@ TEST(Ports, HeadsGoLinearlyToTheirNewValues) {
 /// Water of 0.2 m beside sand whose other side is open: Charny's theorem, q = k H²/(2 L), holds whatever the
 /// height of the seepage face.
 TEST(Ports, SeepageFaceOfADamGivesCharnysFlow) {
-  Scene s = plane(0.4, 0.24, 0.02, 8);
+  Scene s = plane(0.4, 0.24, 0.02, 60);
   s.domain.sides[1].kind = SideKind::open;
   add_body(s, "sand", BodyKind::saturated_soil, {0, 0, 0}, {0.4, 0.2, 0});
   s.bodies[0].fixed = true;
   s.soils["sand"].permeability = {.law = PermeabilityLaw::constant, .value = 1e-2};
   s.reservoirs = {{"lake", along(0, 0, 0, 0.24), 0.2}};
   s.output.sections = {{"middle", along(0.2, 0, 0.2, 0.24), "flow"}};
-  s.output.frame_interval = 8;
+  s.output.frame_interval = 60;
   s.output.series_interval = 0.1;
   const Recorded r = record(s);
   const auto flow = r.results.series("section.middle");
