@@ -55,13 +55,14 @@ void for_arrays(WaterPoints<D>& set, F&& f) {
 template <int D, class F>
 void for_arrays(SoilPoints<D>& set, F&& f) {
   f(set.x), f(set.v), f(set.start), f(set.mass), f(set.body);
-  f(set.porosity), f(set.stress), f(set.plastic_strain), f(set.soil);
+  f(set.porosity), f(set.stress), f(set.plastic_strain), f(set.preconsolidation), f(set.soil);
 }
 
-/// Removes point p; the last point takes its place.
+/// Removes point p; the last point takes its place. Arrays that no law of the scene keeps are empty.
 template <class Set>
 void erase_point(Set& set, std::size_t p) {
   for_arrays(set, [&](auto& array) {
+    if (array.empty()) return;
     array[p] = array.back();
     array.pop_back();
   });
