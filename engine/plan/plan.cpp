@@ -31,15 +31,18 @@ bool reaches_air(const Scene& scene, const Body& body, double h) {
   const double back = dimensions == 2                 ? h
                       : bounds.max[2] > bounds.min[2] ? bounds.max[2]
                                                       : scene.domain.max[2];
-  for (double z = front + 0.5 * h; z < back; z += h)
+  for (double z = front + 0.5 * h; z < back; z += h) {
+    const Region layer = dimensions == 2 ? body.region : at_depth(body.region, z);
     for (double x = bounds.min[0] + 0.5 * h; x < bounds.max[0]; x += h) {
-      double top = bounds.max[1] - 0.25 * h;
-      while (top > bounds.min[1] && !contains(body.region, {x, top, z}, dimensions)) top -= 0.5 * h;
+      const Stretches column = stretches(layer, 1, x);
+      if (column.empty()) continue;
+      const Vec3 above{x, column.back()[1] + 0.25 * h, z};
       const bool covered = std::any_of(scene.bodies.begin(), scene.bodies.end(), [&](const Body& other) {
-        return other.kind != BodyKind::soil && contains(other.region, {x, top + 0.5 * h, z}, dimensions);
+        return other.kind != BodyKind::soil && contains(other.region, above, dimensions);
       });
-      if (!covered && contains(body.region, {x, top, z}, dimensions)) return true;
+      if (!covered) return true;
     }
+  }
   return false;
 }
 

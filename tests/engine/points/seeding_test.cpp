@@ -2,9 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <numeric>
 
 #include "engine/grid/scene_grid.hpp"
+#include "engine/grid/walls.hpp"
+#include "engine/scene/region.hpp"
 #include "tests/engine/small_scene.hpp"
 
 namespace quicksand {
@@ -91,6 +94,71 @@ TEST(Seeding, EachPointKnowsItsMaterial) {
     EXPECT_EQ(points.soil.porosity[p], low ? 0.3 : 0.4);
     EXPECT_EQ(points.soil.body[p], low ? 1 : 0);
   }
+}
+
+/// The bodies by brute force: what `contains` says place by place.
+template <int D>
+std::vector<std::pair<Vec<D>, int>> place_by_place(const Scene& s, const Grid<D>& grid) {
+  std::vector<std::pair<Vec<D>, int>> all;
+  const int n = s.numerics.points_per_cell;
+  for_each_cell(grid, [&](int, const Cell<D>& c) {
+    for (int k = 0; k < power(n, D); ++k) {
+      Vec3 x{};
+      for (int d = 0, rest = k; d < D; ++d, rest /= n)
+        x[d] = grid.origin[d] + (c[d] + (rest % n + 0.5) / n) * grid.h;
+      for (std::size_t b = 0; b < s.bodies.size(); ++b) {
+        if (!contains(s.bodies[b].region, x, D)) continue;
+        Vec<D> at;
+        std::copy_n(x.begin(), D, at.begin());
+        all.emplace_back(at, static_cast<int>(b));
+        break;
+      }
+    }
+  });
+  return all;
+}
+
+Region part(Region::Kind kind, std::vector<Region> parts) {
+  Region r;
+  r.kind = kind;
+  r.parts = std::move(parts);
+  return r;
+}
+
+/// Shapes that touch, leave holes and lie beside each other.
+Scene shapes(Scene s) {
+  Region wedge, disc;
+  wedge.kind = Region::Kind::polygon;
+  wedge.vertices = {{0.1, 0.1}, {0.83, 0.17}, {0.71, 0.66}, {0.4, 0.35}, {0.2, 0.9}};
+  disc.kind = Region::Kind::disc;
+  disc.center = {0.55, 0.3, 0}, disc.radius = 0.17;
+  const Region hole = test::box({0.2, 0.2, 0.11}, {0.3, 0.3, 0.33});
+  add_body(s, "wedge", BodyKind::water, {}, {});
+  s.bodies[0].region = part(Region::Kind::difference, {wedge, disc, hole});
+  add_body(s, "disc", BodyKind::water, {}, {});
+  s.bodies[1].region = part(Region::Kind::union_of, {disc, hole});
+  add_body(s, "box", BodyKind::water, {0.15, 0.15, 0.2}, {0.95, 0.8, 0.4});  // what the others leave
+  return s;
+}
+
+TEST(Seeding, RowsOfPlacesAreWhatRegionsHoldPlaceByPlace) {
+  for (const int per_cell : {1, 2, 3}) {
+    Scene plane = shapes(test::plane(1, 1, 0.05));
+    plane.numerics.points_per_cell = per_cell;
+    const Grid<2> grid = make_grid<2>(plane);
+    const auto points = seed<2>(plane, grid).water;
+    const auto expected = place_by_place(plane, grid);
+    ASSERT_EQ(points.size(), expected.size());
+    for (std::size_t p = 0; p < points.size(); ++p)
+      ASSERT_EQ(std::pair(points.x[p], static_cast<int>(points.body[p])), expected[p]);
+  }
+  Scene space = shapes(test::space({1, 1, 0.4}, 0.1));
+  const Grid<3> grid = make_grid<3>(space);
+  const auto points = seed<3>(space, grid).water;
+  const auto expected = place_by_place(space, grid);
+  ASSERT_EQ(points.size(), expected.size());
+  for (std::size_t p = 0; p < points.size(); ++p)
+    ASSERT_EQ(std::pair(points.x[p], static_cast<int>(points.body[p])), expected[p]);
 }
 
 }  // namespace
