@@ -26,6 +26,7 @@ SoilMaterial SoilMaterial::from(const Soil& soil, const Water& water) {
   m.grain_density = soil.grain_density;
   m.porosity = soil.porosity;
   m.max_porosity = soil.max_porosity.value_or(1);
+  m.shear_share = (1 - 2 * soil.model.poisson_ratio) / (2 * (1 - soil.model.poisson_ratio));
   m.k0 = soil.k0;
   return m;
 }

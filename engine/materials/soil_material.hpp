@@ -20,6 +20,7 @@ struct SoilMaterial {
   double grain_density = 2650;  ///< kg/m³
   double porosity = 0.4;        ///< –, initial
   double max_porosity = 1;      ///< –, grains do not touch above it
+  double shear_share = 0;       ///< –, elastic shear over constrained modulus, (1−2ν)/(2(1−ν))
   std::optional<double> k0{};   ///< –, horizontal over vertical effective stress at the start, if given
 
   static SoilMaterial from(const Soil& soil, const Water& water);

@@ -60,6 +60,10 @@ double surface_step_limit(const SaturatedSoil& soil, double h) {
   return (drag + std::sqrt(drag * drag + 16 * wave)) / (4 * wave);
 }
 
+double shear_step_limit(const SaturatedSoil& soil, double h) {
+  return h / std::sqrt(soil.shear_modulus / ((1 - soil.porosity) * soil.grain_density));
+}
+
 double fast_wave_step_limit(const SaturatedSoil& soil, double h) {
   // Larger root c² of det(K − c² M) = 0 with M = diag(Ms, Mw), Q = Kw/n and
   // K = [[Ec + Q (1−n)², Q n (1−n)], [Q n (1−n), Q n²]].
@@ -84,10 +88,15 @@ StepLimit::StepLimit(const SoilMaterial& soil, double water_density, double wate
   for (Bounds& b : bounds_) {
     for (int i = 0; i < kEntries; ++i) {
       const double n = (i + 0.5) / kEntries;
-      const SaturatedSoil s{modulus, soil.grain_density,     water_density, water_compliance,
-                            n,       soil.drag.resistance(n)};
+      const SaturatedSoil s{modulus,
+                            soil.grain_density,
+                            water_density,
+                            water_compliance,
+                            n,
+                            soil.drag.resistance(n),
+                            soil.shear_share * modulus};
       b.dry[i] = dry_step_limit(s, h);
-      b.saturated[i] = std::min(coupled_step_limit(s, h), surface_step_limit(s, h));
+      b.saturated[i] = std::min({coupled_step_limit(s, h), surface_step_limit(s, h), shear_step_limit(s, h)});
       b.fast_wave[i] =
           water_compliance > 0 ? fast_wave_step_limit(s, h) : std::numeric_limits<double>::infinity();
     }

@@ -14,6 +14,7 @@ struct SaturatedSoil {
   double water_compliance = 0;     ///< 1/Pa; 0: incompressible
   double porosity = 0.4;           ///< –
   double drag = 0;                 ///< N·s/m⁴, R
+  double shear_modulus = 0;        ///< Pa, G
 };
 
 /// Largest stable step (s) of dry grains in cells of h metres: the shortest wave of the staggered lattice,
@@ -29,6 +30,10 @@ double coupled_step_limit(const SaturatedSoil& soil, double h);
 /// and some grain is always next to free water.
 double surface_step_limit(const SaturatedSoil& soil, double h);
 
+/// Largest stable step (s) of shear waves, which neither pressure nor drag hinders as grains and water swing
+/// together: h/√(G/Ms), on the safe side by the water's inertia. The bound in tight soil.
+double shear_step_limit(const SaturatedSoil& soil, double h);
+
 /// Largest stable step (s) along one axis with the pressure explicit and the drag implicit: h/c of the fast
 /// wave without drag, which is at least as fast as the undrained one. Requires compressible water. A lattice
 /// of D dimensions passes waves with √D times the wave number, so that its bound is smaller by √D.
@@ -42,7 +47,7 @@ class StepLimit {
   StepLimit(const SoilMaterial& soil, double water_density, double water_compliance, double h);
   /// `modulus` is the point's elastic constrained modulus, Pa.
   double dry(double porosity, double modulus) const { return look_up(&Bounds::dry, porosity, modulus); }
-  /// The smaller of coupled_step_limit and surface_step_limit.
+  /// The smallest of coupled_step_limit, surface_step_limit and shear_step_limit.
   double saturated(double porosity, double modulus) const {
     return look_up(&Bounds::saturated, porosity, modulus);
   }

@@ -98,14 +98,28 @@ TEST(Stability, FastWaveSolvesItsCharacteristicPolynomial) {
   }
 }
 
+/// Grains and water may swing together across a wave, which tight soil does not hinder.
+TEST(StepLimit, TightSoilIsBoundByItsShearWaves) {
+  Soil s = test::sand();
+  s.permeability.value = 1e-8;
+  const SoilMaterial material = SoilMaterial::from(s, {});
+  const double modulus = material.constrained_modulus<2>({}, 0.4), nu = s.model.poisson_ratio;
+  const double shear = modulus * (1 - 2 * nu) / (2 - 2 * nu);
+  EXPECT_NEAR(StepLimit(material, 1000, 1 / 2.2e9, kCell).saturated(0.4, modulus) /
+                  (kCell * std::sqrt(0.6 * s.grain_density / shear)),
+              1, 1e-3);
+}
+
 TEST(StepLimit, TableAgreesWithTheAnalysis) {
   const Soil s = test::sand();
   const SoilMaterial material = SoilMaterial::from(s, {});
   const double modulus = material.constrained_modulus<2>({}, 0.4);
   const StepLimit limit(material, 1000, 1 / 2.2e9, kCell);
   for (const double n : {0.25, 0.4, 0.41, 0.55}) {
-    const SaturatedSoil soil{modulus, 2650, 1000, 1 / 2.2e9, n, material.drag.resistance(n)};
-    const double saturated = std::min(coupled_step_limit(soil, kCell), surface_step_limit(soil, kCell));
+    const SaturatedSoil soil{
+        modulus, 2650, 1000, 1 / 2.2e9, n, material.drag.resistance(n), modulus * material.shear_share};
+    const double saturated = std::min(
+        {coupled_step_limit(soil, kCell), surface_step_limit(soil, kCell), shear_step_limit(soil, kCell)});
     EXPECT_NEAR(limit.dry(n, modulus) / dry_step_limit(soil, kCell), 1, 1e-3) << n;
     EXPECT_NEAR(limit.saturated(n, modulus) / saturated, 1, 0.02) << n;
     EXPECT_NEAR(limit.fast_wave(n, modulus) / fast_wave_step_limit(soil, kCell), 1, 1e-3) << n;
