@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "engine/grid/kernel.hpp"
 #include "engine/grid/walls.hpp"
 
 namespace quicksand {
@@ -25,6 +26,7 @@ struct KernelVolumes {
 /// Measured with the seeding lattice of `points_per_cell` in all cells that are not blocked, so that seeded
 /// ground is exactly uniform.
 template <int D>
-KernelVolumes<D> kernel_volumes(const Grid<D>& grid, const Walls<D>& walls, int points_per_cell);
+KernelVolumes<D> kernel_volumes(const Grid<D>& grid, const Walls<D>& walls, Kernel kernel,
+                                int points_per_cell);
 
 }  // namespace quicksand

@@ -1,83 +1,85 @@
 #pragma once
-// Quadratic B-spline weights of one point on the staggered faces and on the cell centres.
+// Weights of one point on the staggered faces and on the cell centres.
 
+#include <type_traits>
+
+#include "engine/grid/kernel.hpp"
 #include "engine/grid/walls.hpp"
 
 namespace quicksand {
 
-/// Quadratic B-spline at distances t−1, t, t+1 (in cells) from three nodes, |t| ≤ ½, and its derivative
-/// with respect to the point's position (per cell).
-struct Spline {
-  std::array<double, 3> w, dw;
-  explicit Spline(double t = 0) {
-    w = {0.5 * (0.5 - t) * (0.5 - t), 0.75 - t * t, 0.5 * (0.5 + t) * (0.5 + t)};
-    dw = {t - 0.5, -2 * t, t + 0.5};
-  }
-  /// Hat function on the same three nodes.
-  static Spline hat(double t) {
-    Spline s;
-    s.w = {std::max(0.0, -t), 1 - std::abs(t), std::max(0.0, t)};
-    s.dw = {t < 0 ? -1.0 : 0.0, t < 0 ? 1.0 : -1.0, t < 0 ? 0.0 : 1.0};
-    return s;
-  }
-};
-
 /// One-dimensional factors of all weights of a point; computed once per pass.
-template <int D>
+template <int D, class Shape = QuadraticSpline>
 struct PointKernel {
+  using Factor = Nodes<Shape::nodes>;
   int home = 0;                  ///< index of the point's cell
-  std::array<Spline, D> center;  ///< nodes: centres of cells −1, 0, 1
-  std::array<Spline, D> face;    ///< nodes: faces first−…
-  std::array<int, D> first{};    ///< first face position: −1 or 0 (relative to the low side of the cell)
+  std::array<Factor, D> center;  ///< nodes: centres of cells
+  std::array<Factor, D> face;    ///< nodes: faces
 
   PointKernel(const Grid<D>& grid, const Vec<D>& x) {
     const Cell<D> c = grid.cell_of(x);
     home = grid.index(c);
     for (int d = 0; d < D; ++d) {
       const double xi = std::clamp((x[d] - grid.origin[d]) * grid.inverse_h - c[d], 0.0, 1.0);
-      center[d] = Spline(xi - 0.5);
-      first[d] = xi < 0.5 ? -1 : 0;
-      face[d] = Spline(xi < 0.5 ? xi : xi - 1);
+      center[d] = Shape::on_centers(xi);
+      face[d] = Shape::on_faces(xi);
     }
   }
+  /// The factor along axis a of the weights on faces of component d.
+  const Factor& factor(int d, int a) const { return a == d ? face[a] : center[a]; }
 };
 
-/// The kernel with hats across each component's own axis. The derivative of a quadratic spline is a
-/// difference of hats, so that what it interpolates has everywhere the divergence that the cells around have:
-/// points carried by it keep their volume.
+/// Weight of one face: its product, its gradient with respect to the point's position (1/m), and the arm from
+/// the point to the face as the kernel sees it, behind a wall too (m).
 template <int D>
-PointKernel<D> volume_keeping(const PointKernel<D>& kernel, const Grid<D>& grid, const Vec<D>& x) {
-  PointKernel<D> k = kernel;
-  const Cell<D> c = grid.cell_of(x);
-  for (int d = 0; d < D; ++d)
-    k.center[d] = Spline::hat(std::clamp((x[d] - grid.origin[d]) * grid.inverse_h - c[d], 0.0, 1.0) - 0.5);
-  return k;
+struct FaceWeight {
+  double w = 1;
+  Vec<D> gradient, arm;
+};
+
+/// What a face's velocity adds to the gradient that a point carries in the affine transfer, 1/m:
+/// w (x_f − x_p) over the kernel's spread, which for hats is the gradient of w.
+template <class Shape, int D>
+Vec<D> affine_weight(const FaceWeight<D>& f, double inverse_h) {
+  if constexpr (std::is_same_v<Shape, LinearHat>) return f.gradient;
+  Vec<D> a;
+  for (int j = 0; j < D; ++j) a[j] = f.w * f.arm[j] * inverse_h * inverse_h / QuadraticSpline::spread;
+  return a;
 }
 
-/// Calls f(face, weight, sign, gradient) for the 3^D faces of component d around a point. `gradient` is of
-/// the weight with respect to the point's position (1/m); `sign` goes with momenta, forces and velocities.
-template <int D, class F>
-inline void for_faces(const Grid<D>& grid, const Walls<D>& walls, const PointKernel<D>& k, int d, F&& f) {
-  constexpr int n = power(3, D);
+/// Calls f(face, weight, sign, gradient) for the faces of component d around a point. `sign` goes with
+/// momenta, forces and velocities. f may take a `FaceWeight` in place of weight and gradient: f(face, weight,
+/// sign).
+template <int D, class Shape, class F>
+inline void for_faces(const Grid<D>& grid, const Walls<D>& walls, const PointKernel<D, Shape>& k, int d,
+                      F&& f) {
+  constexpr bool with_arm = std::is_invocable_v<F, int, const FaceWeight<D>&, double>;
+  constexpr int n = power(Shape::nodes, D);
   std::array<int, D> position;
   const auto* folds = walls.folds(k.home);
+  const auto call = [&](int face, const FaceWeight<D>& weight, double sign) {
+    if constexpr (with_arm)
+      f(face, weight, sign);
+    else
+      f(face, weight.w, sign, weight.gradient);
+  };
   for (int i = 0; i < n; ++i) {
     int rest = i;
-    double w = 1;
-    Vec<D> g;
-    g.fill(grid.inverse_h);
+    FaceWeight<D> weight;
+    weight.gradient.fill(grid.inverse_h);
     for (int a = 0; a < D; ++a) {
-      const int j = rest % 3;
-      rest /= 3;
-      const Spline& s = a == d ? k.face[a] : k.center[a];
-      position[a] = (a == d ? k.first[a] : -1) + j;
-      w *= s.w[j];
-      for (int b = 0; b < D; ++b) g[b] *= b == a ? s.dw[j] : s.w[j];
+      const int j = rest % Shape::nodes;
+      rest /= Shape::nodes;
+      const auto& s = k.factor(d, a);
+      position[a] = s.first + j;
+      weight.w *= s.w[j];
+      for (int b = 0; b < D; ++b) weight.gradient[b] *= b == a ? s.dw[j] : s.w[j];
+      if constexpr (with_arm) weight.arm[a] = (position[a] - s.at) * grid.h;
     }
     if (!folds) {
       int face = k.home;
       for (int a = 0; a < D; ++a) face += position[a] * grid.stride[a];
-      f(face, w, 1.0, g);
+      call(face, weight, 1.0);
     } else {
       int slot = position[d] + 1;
       for (int a = 0, scale = 4; a < D; ++a)
@@ -85,24 +87,26 @@ inline void for_faces(const Grid<D>& grid, const Walls<D>& walls, const PointKer
       const Fold& fold = folds->face[d][slot];
       double sign = fold.tangential;
       if (fold.normal_wall >= 0 && !walls.separated(d, fold.normal_wall)) sign = -sign;
-      f(fold.target, w, sign, g);
+      call(fold.target, weight, sign);
     }
   }
 }
 
-/// Calls f(cell, weight) for the 3^D cell centres around a point.
-template <int D, class F>
-inline void for_centers(const Grid<D>& grid, const Walls<D>& walls, const PointKernel<D>& k, F&& f) {
-  constexpr int n = power(3, D);
+/// Calls f(cell, weight) for the cell centres around a point.
+template <int D, class Shape, class F>
+inline void for_centers(const Grid<D>& grid, const Walls<D>& walls, const PointKernel<D, Shape>& k, F&& f) {
+  constexpr int n = power(Shape::nodes, D);
   const auto* folds = walls.folds(k.home);
   for (int i = 0; i < n; ++i) {
     double w = 1;
-    int cell = k.home;
-    for (int a = 0, rest = i; a < D; ++a, rest /= 3) {
-      w *= k.center[a].w[rest % 3];
-      cell += (rest % 3 - 1) * grid.stride[a];
+    int cell = k.home, slot = 0;
+    for (int a = 0, rest = i, scale = 1; a < D; ++a, rest /= Shape::nodes, scale *= 3) {
+      const int j = rest % Shape::nodes, position = k.center[a].first + j;
+      w *= k.center[a].w[j];
+      cell += position * grid.stride[a];
+      slot += (position + 1) * scale;
     }
-    f(folds ? folds->center[i] : cell, w);
+    f(folds ? folds->center[slot] : cell, w);
   }
 }
 

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/grid/kernel.hpp"
+
 namespace quicksand {
 namespace {
 
@@ -72,6 +74,10 @@ double fast_wave_step_limit(const SaturatedSoil& soil, double h) {
   const double a = (soil.constrained_modulus + q * phi * phi) / ms, b = q * n * n / mw;
   const double coupling = q * n * phi / std::sqrt(ms * mw);
   return h / std::sqrt(0.5 * (a + b) + std::hypot(0.5 * (a - b), coupling));
+}
+
+double bounding_edge(Kernel kernel, double h) {
+  return kernel == Kernel::linear ? 2 * std::sqrt(LinearHat::light_part) * h : h;
 }
 
 namespace {

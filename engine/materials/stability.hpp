@@ -39,6 +39,10 @@ double shear_step_limit(const SaturatedSoil& soil, double h);
 /// of D dimensions passes waves with √D times the wave number, so that its bound is smaller by √D.
 double fast_wave_step_limit(const SaturatedSoil& soil, double h);
 
+/// Edge (m) of the cells by which waves are bounded, in cells of h metres: h, or what the lightest faces of
+/// linear hats leave of it.
+double bounding_edge(Kernel kernel, double h);
+
 /// The bounds tabulated over porosity, for one soil; cheap enough to ask for every point. Soil whose
 /// stiffness varies has a table for every factor of four in stiffness.
 class StepLimit {

@@ -72,7 +72,8 @@ double initial_soil_limit(const Scene& scene, double h) {
     const Soil& soil = scene.soils.at(body.soil);
     const double compliance = scene.water.bulk_modulus ? 1 / *scene.water.bulk_modulus : 0;
     const SoilMaterial material = SoilMaterial::from(soil, scene.water);
-    const StepLimit limits(material, scene.water.density, compliance, h);
+    const StepLimit limits(material, scene.water.density, compliance,
+                           bounding_edge(scene.numerics.kernel, h));
     const double n = soil.porosity, modulus = initial_modulus(scene, body, material);
     const bool confined = body.kind == BodyKind::saturated_soil && !reaches_air(scene, body, h);
     const double saturated = limits.saturated(n, modulus);
@@ -89,7 +90,8 @@ double initial_fast_wave_limit(const Scene& scene, double h) {
     if (body.kind != BodyKind::saturated_soil || body.fixed) continue;
     const Soil& soil = scene.soils.at(body.soil);
     const SoilMaterial material = SoilMaterial::from(soil, scene.water);
-    const StepLimit limits(material, scene.water.density, 1 / scene.water.bulk_modulus.value(), h);
+    const StepLimit limits(material, scene.water.density, 1 / scene.water.bulk_modulus.value(),
+                           bounding_edge(scene.numerics.kernel, h));
     limit = std::min(limit, limits.fast_wave(soil.porosity, initial_modulus(scene, body, material)));
   }
   return limit;
@@ -103,9 +105,12 @@ void measure(const Scene& scene, Plan& plan) {
   plan.fixed_soil_points = points.fixed;
   plan.water_points = points.water;
   for (int d = 0; d < D; ++d) plan.cells[d] = grid.cells[d];
-  const double per_soil = 3 * sizeof(Vec<D>) + sizeof(Stress<D>) + 3 * sizeof(double) + 2 * sizeof(int) + 8;
-  const double per_water = 3 * sizeof(Vec<D>) + sizeof(double) + sizeof(int) + 8;
-  const double per_cell = D * (sizeof(FaceSums) + sizeof(FaceFlow) + sizeof(FixedFace)) +
+  const double affine = scene.numerics.transfer == Transfer::apic ? sizeof(Gradient<D>) : 0;
+  const double follower = scene.numerics.kernel == Kernel::linear ? D * sizeof(Follower) : 0;
+  const double per_soil =
+      affine + 3 * sizeof(Vec<D>) + sizeof(Stress<D>) + 3 * sizeof(double) + 2 * sizeof(int) + 8;
+  const double per_water = affine + 3 * sizeof(Vec<D>) + sizeof(double) + sizeof(int) + 8;
+  const double per_cell = follower + D * (sizeof(FaceSums) + sizeof(FaceFlow) + sizeof(FixedFace)) +
                           2 * sizeof(CellSums) + sizeof(CellState) + 2 * sizeof(double) + 2 * (D + 7) +
                           (grid.axial ? (D + 1) * sizeof(double) : 0);
   plan.memory_bytes = per_soil * static_cast<double>(plan.soil_points + plan.fixed_soil_points) +

@@ -21,6 +21,9 @@ struct PointSet {
   std::vector<Vec<D>> start;  ///< m, position at seeding
   std::vector<double> mass;   ///< kg
   std::vector<std::int32_t> body;
+  /// 1/s, gradient of the velocity that the affine transfer carries, [component][axis]; empty otherwise
+  std::vector<std::array<Vec<D>, D>> affine;
+  bool carries_gradient = false;  ///< whether `affine` is kept
 
   std::size_t size() const { return x.size(); }
   void add(const Vec<D>& at, const Vec<D>& velocity, double m, int body_index) {
@@ -29,6 +32,7 @@ struct PointSet {
     start.push_back(at);
     mass.push_back(m);
     body.push_back(body_index);
+    if (carries_gradient) affine.push_back({});
   }
 };
 
@@ -50,11 +54,11 @@ struct SoilPoints : PointSet<D> {
 /// Calls f(array) for every array of a set.
 template <int D, class F>
 void for_arrays(WaterPoints<D>& set, F&& f) {
-  f(set.x), f(set.v), f(set.start), f(set.mass), f(set.body);
+  f(set.x), f(set.v), f(set.start), f(set.mass), f(set.body), f(set.affine);
 }
 template <int D, class F>
 void for_arrays(SoilPoints<D>& set, F&& f) {
-  f(set.x), f(set.v), f(set.start), f(set.mass), f(set.body);
+  f(set.x), f(set.v), f(set.start), f(set.mass), f(set.body), f(set.affine);
   f(set.porosity), f(set.stress), f(set.plastic_strain), f(set.preconsolidation), f(set.soil);
 }
 

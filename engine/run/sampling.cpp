@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "engine/grid/scene_grid.hpp"
-#include "engine/grid/stencil.hpp"
 #include "engine/step/phases.hpp"
+#include "engine/step/scheme.hpp"
 
 namespace quicksand {
 namespace {
@@ -28,12 +28,14 @@ double from_wet_cell(const State<D>& s, int cell, const Vec<D>& x) {
 
 template <int D, class Velocity>
 Vec<D> velocity_at(const State<D>& s, const Walls<D>& walls, const Vec<D>& x, Velocity&& velocity) {
-  const PointKernel<D> kernel(s.grid, x);
   Vec<D> v{};
-  for (int d = 0; d < D; ++d)
-    for_faces(s.grid, walls, kernel, d, [&](int face, double w, double sign, const Vec<D>&) {
-      v[d] += sign * w * velocity(s.flow[d][face]);
-    });
+  with_kernel(s.constants.kernel, [&](auto shape) {
+    const PointKernel<D, decltype(shape)> kernel(s.grid, x);
+    for (int d = 0; d < D; ++d)
+      for_faces(s.grid, walls, kernel, d, [&](int face, double w, double sign, const Vec<D>&) {
+        v[d] += sign * w * velocity(s.flow[d][face]);
+      });
+  });
   return v;
 }
 
@@ -77,10 +79,12 @@ Vec<D> soil_velocity_at(const State<D>& s, const Vec<D>& x) {
 
 template <int D>
 double porosity_at(const State<D>& s, const Vec<D>& x) {
-  const PointKernel<D> kernel(s.grid, x);
   double grains = 0;
-  for_centers(s.grid, s.water_walls, kernel,
-              [&](int c, double w) { grains += w * s.cell_sums[c].grains / s.volume.cell(c); });
+  with_kernel(s.constants.kernel, [&](auto shape) {
+    const PointKernel<D, decltype(shape)> kernel(s.grid, x);
+    for_centers(s.grid, s.water_walls, kernel,
+                [&](int c, double w) { grains += w * s.cell_sums[c].grains / s.volume.cell(c); });
+  });
   return 1 - grains;
 }
 

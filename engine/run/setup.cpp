@@ -21,11 +21,14 @@ Constants<D> make_constants(const Scene& scene, const Grid<D>& grid) {
   c.pic_rate = scene.numerics.pic_rate;
   c.pressure_tolerance = scene.numerics.pressure_tolerance;
   c.drift_time = scene.numerics.drift_time;
+  c.kernel = scene.numerics.kernel;
+  c.transfer = scene.numerics.transfer;
   c.explicit_pressure = scene.numerics.pressure == PressureScheme::explicit_scheme;
   c.points_per_cell = scene.numerics.points_per_cell;
   for (const auto& [name, soil] : scene.soils) {
     c.soils.push_back(SoilMaterial::from(soil, scene.water));
-    c.step_limits.emplace_back(c.soils.back(), c.water_density, c.water_compliance, grid.h);
+    c.step_limits.emplace_back(c.soils.back(), c.water_density, c.water_compliance,
+                               bounding_edge(c.kernel, grid.h));
   }
   return c;
 }
@@ -117,11 +120,18 @@ State<D> make_state(const Scene& scene) {
     s.image[d].assign(s.grid.count(), {});
     s.flow[d].assign(s.grid.count(), {});
   }
+  if (s.constants.kernel == Kernel::linear)
+    for (auto& followers : s.follower) followers.assign(s.grid.count(), {});
   s.cell_sums.assign(s.grid.count(), {});
   s.cell.assign(s.grid.count(), {});
   s.pressure.assign(s.grid.count(), 0);
   for (const Load& load : scene.loads)
     if (load.kind == Load::Kind::traction) s.loads.push_back(make_load<D>(scene, load, s));
+  if (s.constants.transfer == Transfer::apic) {
+    s.soil.affine.assign(s.soil.size(), {});
+    s.water.affine.assign(s.water.size(), {});
+    s.soil.carries_gradient = s.water.carries_gradient = true;
+  }
   enter_stage(scene, scene.stages.front(), s);
   if (s.fixed.size()) measure_fixed(s);
   set_ports(s);
@@ -142,7 +152,7 @@ void enter_stage(const Scene& scene, const Stage& stage, State<D>& s) {
   SceneWalls<D> walls = make_walls<D>(scene, s.grid, stage.open_gates);
   s.water_walls = std::move(walls.water);
   s.soil_walls = std::move(walls.soil);
-  s.volume = kernel_volumes<D>(s.grid, s.water_walls, scene.numerics.points_per_cell);
+  s.volume = kernel_volumes<D>(s.grid, s.water_walls, s.constants.kernel, scene.numerics.points_per_cell);
   if (s.ports.empty()) make_ports(walls.ports, s);
   for (const Port<D>& port : s.ports) s.water_walls.set_port_open(port.d, port.face, port.open);
   set_levels(scene, stage, s);

@@ -45,8 +45,6 @@ void check_supported(const Scene& scene, Faults& faults) {
     refuse(stage.damping > 0, at_index("stages", k, "/damping"), "damping");
     refuse(stage.quasi_static, at_index("stages", k, "/quasi_static"), "quasi_static");
   }
-  refuse(scene.numerics.kernel == Kernel::linear, "/numerics/kernel", "kernel linear");
-  refuse(scene.numerics.transfer == Transfer::apic, "/numerics/transfer", "transfer apic");
 }
 
 std::vector<Fault> check(const Scene& scene) {

@@ -48,6 +48,13 @@ double surface_support(const State<D>& s, int d, int face, double dt) {
          f.exchange * s.volume.face(d, face);
 }
 
+/// The leader's sums hold a follower's mass as if it had the leader's old velocity.
+template <int D>
+double momentum_beside_leader(const State<D>& s, int d, int face) {
+  const Follower& f = s.follower[d][face];
+  return f.leader < 0 ? 0 : f.mass * (f.velocity - s.flow[d][leader_of(s, d, face)].soil_old);
+}
+
 template <int D>
 struct Sum {
   Vec<D> reaction{}, surface{}, grid{};  ///< grid: Σ M v of the old grid velocities
@@ -66,6 +73,7 @@ Supports<D> support_impulses(const State<D>& s, double dt, double pic) {
     Sum<D> part;
     s.blocks.cells(s.grid, b, true, [&](int face, const Cell<D>&) {
       for (int d = 0; d < D; ++d) {
+        if (s.constants.kernel == Kernel::linear) part.grid[d] += momentum_beside_leader(s, d, face);
         const FaceSums& sums = s.sums[d][face];
         if (sums.soil_mass == 0 && sums.water_mass == 0) continue;
         const FaceFlow& f = s.flow[d][face];

@@ -12,6 +12,16 @@ struct StepReport;
 /// Points → `sums`, `cell_sums`.
 template <int D>
 void points_to_faces(State<D>& s);
+/// Linear kernel only: gives what acts on faces that hold next to nothing of a soil body to a neighbour that
+/// does → `follower`, `sums`.
+template <int D>
+void join_light_faces(State<D>& s);
+/// The velocities of such faces, once those of their leaders are known → `flow`.
+template <int D>
+void follow_leaders(State<D>& s);
+/// The face that a face moves with in the end; itself if it moves on its own.
+template <int D>
+int leader_of(const State<D>& s, int d, int face);
 /// Once per run: what fixed grains occupy → `fixed_face`, `fixed_cell`.
 template <int D>
 void measure_fixed(State<D>& s);

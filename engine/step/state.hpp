@@ -36,6 +36,13 @@ struct FaceImage {
   double soil = 0, water = 0;  ///< kg
 };
 
+/// A face that holds next to nothing of the grains, and accelerates with a neighbour that does.
+struct Follower {
+  int leader = -1;      ///< face, which may follow another itself; −1: the face moves on its own
+  double mass = 0;      ///< kg, that its points left there, less mirror images
+  double velocity = 0;  ///< m/s, their mean
+};
+
 /// What grains that never move occupy and resist; computed once.
 struct FixedFace {
   double phi = 0, bulk = 0;  ///< –, grains; grains and pores
@@ -95,7 +102,9 @@ struct Constants {
   double viscosity = 0;         ///< Pa·s
   double pic_rate = 0;          ///< 1/s
   double pressure_tolerance = 1e-6;
-  double drift_time = 0;           ///< s; 0: no feedback
+  double drift_time = 0;  ///< s; 0: no feedback
+  Kernel kernel = Kernel::quadratic;
+  Transfer transfer = Transfer::flip;
   bool explicit_pressure = false;  ///< pressure advanced from the last one instead of solved for
   int points_per_cell = 2;         ///< per axis, of points that enter
   std::vector<SoilMaterial> soils;
@@ -179,6 +188,7 @@ struct State {
 
   std::array<std::vector<FaceSums>, D> sums;
   std::array<std::vector<FaceImage>, D> image;
+  std::array<std::vector<Follower>, D> follower;  ///< linear kernel only
   std::array<std::vector<FaceFlow>, D> flow;
   std::array<std::vector<FixedFace>, D> fixed_face;
   std::vector<CellSums> cell_sums;

@@ -3,14 +3,21 @@
 #include <cmath>
 
 #include "engine/step/phases.hpp"
+#include "engine/step/scheme.hpp"
 
 namespace quicksand {
 namespace {
 
-/// Signed distance (cells) from a plane water surface at which a quadratic kernel is filled to `fill`:
-/// the inverse of the spline's integral, which is ½ + ¾ξ − ξ³/3 for |ξ| ≤ ½ and 1 − (3/2−ξ)³/6 beyond.
-double depth_of_fill(double fill) {
-  if (fill < 0.5) return -depth_of_fill(1 - fill);
+/// Signed distance (cells) from a plane water surface at which a kernel is filled to `fill`: the inverse of
+/// its integral, which is 1 − (1−ξ)²/2 for a hat at ξ ≥ 0.
+double depth_of_fill(LinearHat, double fill) {
+  if (fill < 0.5) return -depth_of_fill(LinearHat{}, 1 - fill);
+  return 1 - std::sqrt(2 * std::max(0.0, 1 - fill));
+}
+
+/// The quadratic spline's integral is ½ + ¾ξ − ξ³/3 for |ξ| ≤ ½ and 1 − (3/2−ξ)³/6 beyond.
+double depth_of_fill(QuadraticSpline, double fill) {
+  if (fill < 0.5) return -depth_of_fill(QuadraticSpline{}, 1 - fill);
   const double rest = 1 - fill;
   if (rest <= 0) return 1.5;
   if (rest <= 1.0 / 6) return 1.5 - std::cbrt(6 * rest);
@@ -33,7 +40,7 @@ void find_surface(State<D>& s) {
       const double volume = s.volume.cell(i);
       c.n = std::max(1 - sums.grains / volume, kMinRoom);
       c.fill = fill_of(sums.water / volume, sums.grains / volume, sums.soil_bulk / volume);
-      c.depth = depth_of_fill(c.fill);
+      c.depth = with_kernel(s.constants.kernel, [&](auto shape) { return depth_of_fill(shape, c.fill); });
       c.unknown = c.depth > kMinSurfaceDistance ? 0 : -1;
       if (c.unknown < 0) s.pressure[i] = 0;
     });

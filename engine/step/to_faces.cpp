@@ -1,7 +1,7 @@
 // Points → faces and cells: masses, momenta, internal forces, drag, volumes.
 
-#include "engine/grid/stencil.hpp"
 #include "engine/step/phases.hpp"
+#include "engine/step/scheme.hpp"
 
 namespace quicksand {
 namespace {
@@ -15,28 +15,38 @@ Vec<D> stress_row(const Stress<D>& s, int d) {
     return d == 0 ? Vec<3>{s[0], s[3], s[5]} : d == 1 ? Vec<3>{s[3], s[1], s[4]} : Vec<3>{s[5], s[4], s[2]};
 }
 
-template <int D, bool kAxial>
+/// Velocity of component d that a point gives to a face: its own, and with the affine transfer what its
+/// gradient adds on the way there. [JSSTS15] eq. (8), per component of the staggered grid.
+template <class S, int D>
+double velocity_at_face(const PointSet<D>& set, std::uint32_t p, int d, const FaceWeight<D>& weight) {
+  double v = set.v[p][d];
+  if constexpr (S::affine)
+    for (int j = 0; j < D; ++j) v += set.affine[p][d][j] * weight.arm[j];
+  return v;
+}
+
+template <class S, int D>
 void soil_to_faces(State<D>& s, std::uint32_t p) {
   const SoilPoints<D>& soil = s.soil;
   const SoilMaterial& material = s.constants.soils[soil.soil[p]];
-  const PointKernel<D> kernel(s.grid, soil.x[p]);
+  const PointKernel<D, typename S::Shape> kernel(s.grid, soil.x[p]);
   const double mass = soil.mass[p], n = soil.porosity[p];
   const double grains = mass / material.grain_density, bulk = grains / (1 - n);
   const double resistivity = s.water.size() ? bulk * material.drag.resistivity(n) : 0;
   // The hoop stress pulls towards the axis: the weak form's σθθ v_r/r.
-  const double hoop = kAxial ? soil.stress[p][2] / soil.x[p][0] : 0;
+  const double hoop = S::axial ? soil.stress[p][2] / soil.x[p][0] : 0;
   for (int d = 0; d < D; ++d) {
     const Vec<D> stress = stress_row<D>(soil.stress[p], d);
-    const double momentum = mass * soil.v[p][d];
-    for_faces(s.grid, s.soil_walls, kernel, d, [&](int face, double w, double sign, const Vec<D>& g) {
+    for_faces(s.grid, s.soil_walls, kernel, d, [&](int face, const FaceWeight<D>& weight, double sign) {
       FaceSums& f = s.sums[d][face];
+      const double w = weight.w;
       double divergence = 0;
-      for (int j = 0; j < D; ++j) divergence += stress[j] * g[j];
-      if (kAxial && d == 0) divergence += w * hoop;
+      for (int j = 0; j < D; ++j) divergence += stress[j] * weight.gradient[j];
+      if (S::axial && d == 0) divergence += w * hoop;
       f.soil_mass += w * mass;
       f.grains += w * grains;
       f.soil_bulk += w * bulk;
-      f.soil_momentum += sign * w * momentum;
+      f.soil_momentum += sign * w * mass * velocity_at_face<S>(soil, p, d, weight);
       f.soil_force -= sign * bulk * divergence;  // [FMS19] eq. (1), ∇·σ′ in its weak form
       f.resistivity += w * resistivity;
       if (sign < 0) s.image[d][face].soil += 2 * w * mass;
@@ -49,16 +59,16 @@ void soil_to_faces(State<D>& s, std::uint32_t p) {
   });
 }
 
-template <int D>
+template <class S, int D>
 void water_to_faces(State<D>& s, std::uint32_t p) {
-  const PointKernel<D> kernel(s.grid, s.water.x[p]);
+  const PointKernel<D, typename S::Shape> kernel(s.grid, s.water.x[p]);
   const double mass = s.water.mass[p], volume = mass / s.constants.water_density;
   for (int d = 0; d < D; ++d) {
-    const double momentum = mass * s.water.v[p][d];
-    for_faces(s.grid, s.water_walls, kernel, d, [&](int face, double w, double sign, const Vec<D>&) {
+    for_faces(s.grid, s.water_walls, kernel, d, [&](int face, const FaceWeight<D>& weight, double sign) {
       FaceSums& f = s.sums[d][face];
+      const double w = weight.w;
       f.water_mass += w * mass;
-      f.water_momentum += sign * w * momentum;
+      f.water_momentum += sign * w * mass * velocity_at_face<S>(s.water, p, d, weight);
       if (sign < 0) s.image[d][face].water += 2 * w * mass;
     });
   }
@@ -67,14 +77,14 @@ void water_to_faces(State<D>& s, std::uint32_t p) {
 }
 
 /// Surface loads are few: serial, in the order of their markers.
-template <int D>
+template <class Shape, int D>
 void loads_to_faces(State<D>& s) {
   s.load_force = {};
   for (const SurfaceLoad<D>& load : s.loads) {
     if (!load.active) continue;
     const double rise = load.ramp > 0 ? std::min(1.0, (s.time - load.start) / load.ramp) : 1.0;
     for (std::size_t m = 0; m < load.marker.size(); ++m) {
-      const PointKernel<D> kernel(s.grid, load.marker[m]);
+      const PointKernel<D, Shape> kernel(s.grid, load.marker[m]);
       const double pull = rise * load.area[m];
       for (int d = 0; d < D; ++d) s.load_force[d] += pull * load.traction[d];
       for (int d = 0; d < D; ++d)
@@ -102,24 +112,28 @@ void points_to_faces(State<D>& s) {
       s.cell_sums[i] = has_fixed ? s.fixed_cell[i] : CellSums{};
     });
   });
-  with_axial(s.grid, [&](auto axial) {
+  with_scheme(s, [&](auto scheme) {
+    using S = decltype(scheme);
     s.blocks.by_color([&](int b) {
       for (auto i = s.soil_blocks.begin[b]; i < s.soil_blocks.begin[b + 1]; ++i)
-        soil_to_faces<D, axial>(s, s.soil_blocks.order[i]);
+        soil_to_faces<S>(s, s.soil_blocks.order[i]);
       for (auto i = s.water_blocks.begin[b]; i < s.water_blocks.begin[b + 1]; ++i)
-        water_to_faces(s, s.water_blocks.order[i]);
+        water_to_faces<S>(s, s.water_blocks.order[i]);
     });
+    loads_to_faces<typename S::Shape>(s);
   });
-  loads_to_faces(s);
+  if (s.constants.kernel == Kernel::linear) join_light_faces(s);
 }
 
-template <int D>
-void measure_fixed(State<D>& s) {
+namespace {
+
+template <class Shape, int D>
+void measure_fixed_with(State<D>& s) {
   for (auto& f : s.fixed_face) f.assign(s.grid.count(), {});
   s.fixed_cell.assign(s.grid.count(), {});
   for (std::size_t p = 0; p < s.fixed.size(); ++p) {
     const SoilMaterial& material = s.constants.soils[s.fixed.soil[p]];
-    const PointKernel<D> kernel(s.grid, s.fixed.x[p]);
+    const PointKernel<D, Shape> kernel(s.grid, s.fixed.x[p]);
     const double n = s.fixed.porosity[p], grains = s.fixed.mass[p] / material.grain_density;
     const double bulk = grains / (1 - n), resistivity = material.drag.resistivity(n);
     for (int d = 0; d < D; ++d)
@@ -134,6 +148,13 @@ void measure_fixed(State<D>& s) {
       s.fixed_cell[cell].soil_bulk += w * bulk;
     });
   }
+}
+
+}  // namespace
+
+template <int D>
+void measure_fixed(State<D>& s) {
+  with_kernel(s.constants.kernel, [&](auto shape) { measure_fixed_with<decltype(shape)>(s); });
 }
 
 template void points_to_faces<2>(State<2>&);

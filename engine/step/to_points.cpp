@@ -3,8 +3,8 @@
 #include <cmath>
 #include <limits>
 
-#include "engine/grid/stencil.hpp"
 #include "engine/step/phases.hpp"
+#include "engine/step/scheme.hpp"
 #include "engine/step/step.hpp"
 
 namespace quicksand {
@@ -63,18 +63,26 @@ bool move(const Grid<D>& grid, const Walls<D>& walls, int home, Vec<D>& x, const
 }
 
 /// FLIP with a little PIC: the point keeps its own velocity plus the grid's change, and relaxes to the
-/// grid's velocity at `pic_rate`, a rate so that the damping does not depend on the time step.
+/// grid's velocity at `pic_rate`, a rate so that the damping does not depend on the time step. The affine
+/// transfer takes the grid's velocity as it is (`pic` = 1): what PIC would lose is in the gradient.
 template <int D>
 double mix(double own, double old_grid, double new_grid, double pic) {
   return (1 - pic) * (own + new_grid - old_grid) + pic * new_grid;
+}
+
+/// One face's part in the gradient of component d that the affine transfer keeps.
+template <class S, int D>
+void add_slope(const Grid<D>& grid, const FaceWeight<D>& weight, double velocity, Vec<D>& slope) {
+  const Vec<D> a = affine_weight<typename S::Shape>(weight, grid.inverse_h);
+  for (int j = 0; j < D; ++j) slope[j] += velocity * a[j];
 }
 
 /// Distance above the water surface, in cells, from which a drop falls freely instead of moving with it.
 /// Points of a surface at rest lie a quarter of a cell below it.
 constexpr double kFreeHeight = 0.25;
 
-template <int D>
-bool falls_freely(const State<D>& s, const PointKernel<D>& kernel) {
+template <class Shape, int D>
+bool falls_freely(const State<D>& s, const PointKernel<D, Shape>& kernel) {
   if (s.cell[kernel.home].confined) return false;
   double depth = 0;
   for_centers(s.grid, s.water_walls, kernel, [&](int c, double w) { depth += w * s.cell[c].depth; });
@@ -82,38 +90,41 @@ bool falls_freely(const State<D>& s, const PointKernel<D>& kernel) {
 }
 
 /// Way of the water at x in dt by the midpoint rule; Euler's way leads out of every bend.
-template <int D>
-Vec<D> path(const State<D>& s, const PointKernel<D>& kernel, const Vec<D>& x, double dt) {
-  const auto way = [&](const PointKernel<D>& k, const Vec<D>& at, double seconds) {
-    const PointKernel<D> mover = volume_keeping<D>(k, s.grid, at);
+template <class Shape, int D>
+Vec<D> path(const State<D>& s, const Vec<D>& x, double dt) {
+  const auto way = [&](const PointKernel<D, typename Shape::Mover>& kernel, double seconds) {
     Vec<D> u{};
     for (int d = 0; d < D; ++d)
-      for_faces(s.grid, s.water_walls, mover, d, [&](int face, double w, double sign, const Vec<D>&) {
+      for_faces(s.grid, s.water_walls, kernel, d, [&](int face, double w, double sign, const Vec<D>&) {
         u[d] += seconds * sign * w * s.flow[d][face].water;
       });
     return u;
   };
+  const PointKernel<D, typename Shape::Mover> start(s.grid, x);
   Vec<D> middle = x;
-  move<D>(s.grid, s.water_walls, kernel.home, middle, way(kernel, x, 0.5 * dt));
-  return way(PointKernel<D>(s.grid, middle), middle, dt);
+  move<D>(s.grid, s.water_walls, start.home, middle, way(start, 0.5 * dt));
+  return way({s.grid, middle}, dt);
 }
 
-template <int D>
+template <class S, int D>
 void water_from_faces(State<D>& s, std::uint32_t p, double dt, double pic, Totals<D>& totals) {
   WaterPoints<D>& water = s.water;
-  const PointKernel<D> kernel(s.grid, water.x[p]);
+  const PointKernel<D, typename S::Shape> kernel(s.grid, water.x[p]);
   const bool falls = falls_freely(s, kernel);
   Vec<D> step{};
   double speed2 = 0;
   for (int d = 0; d < D; ++d) {
     double v_old = 0, v_new = 0, carried = 0;
-    for_faces(s.grid, s.water_walls, kernel, d, [&](int face, double w, double sign, const Vec<D>&) {
+    Vec<D> slope{};
+    for_faces(s.grid, s.water_walls, kernel, d, [&](int face, const FaceWeight<D>& weight, double sign) {
       const FaceFlow& f = s.flow[d][face];
-      v_old += sign * w * f.water_old;
-      v_new += sign * w * f.water;
-      if (falls && f.wet > 1) carried += sign * w * (f.water - f.water_old - dt * s.constants.gravity[d]);
+      const double lift = falls && f.wet > 1 ? f.water - f.water_old - dt * s.constants.gravity[d] : 0;
+      v_old += sign * weight.w * f.water_old;
+      v_new += sign * weight.w * (f.water - lift);
+      carried += sign * weight.w * lift;
+      if constexpr (S::affine) add_slope<S, D>(s.grid, weight, sign * (f.water - lift), slope);
     });
-    v_new -= carried;
+    if constexpr (S::affine) water.affine[p][d] = slope;
     double& v = water.v[p][d];
     v = mix<D>(v, v_old, v_new, pic);
     totals.let_go[d] -= water.mass[p] * carried;
@@ -121,7 +132,7 @@ void water_from_faces(State<D>& s, std::uint32_t p, double dt, double pic, Total
     totals.momentum[d] += water.mass[p] * v;
     speed2 += v * v;
   }
-  if (!falls) step = path<D>(s, kernel, water.x[p], dt);
+  if (!falls) step = path<typename S::Shape>(s, water.x[p], dt);
   totals.interventions.clipped_points += move<D>(s.grid, s.water_walls, kernel.home, water.x[p], step);
   totals.mass += water.mass[p];
   totals.kinetic += 0.5 * water.mass[p] * speed2;
@@ -137,29 +148,32 @@ double strain_energy(const State<D>& s, std::size_t p) {
   return volume * material.energy<D>(soil_state(s.soil, p), n);
 }
 
-template <int D, bool kAxial>
+template <class S, int D>
 void soil_from_faces(State<D>& s, std::uint32_t p, double dt, double pic, Totals<D>& totals) {
   SoilPoints<D>& soil = s.soil;
   const SoilMaterial& material = s.constants.soils[soil.soil[p]];
-  const PointKernel<D> kernel(s.grid, soil.x[p]);
+  const PointKernel<D, typename S::Shape> kernel(s.grid, soil.x[p]);
   Vec<D> step{};
   Gradient<D> l{};
   double speed2 = 0;
   for (int d = 0; d < D; ++d) {
     double v_old = 0, v_new = 0;
-    for_faces(s.grid, s.soil_walls, kernel, d, [&](int face, double w, double sign, const Vec<D>& g) {
+    Vec<D> slope{};
+    for_faces(s.grid, s.soil_walls, kernel, d, [&](int face, const FaceWeight<D>& weight, double sign) {
       const FaceFlow& f = s.flow[d][face];
-      v_old += sign * w * f.soil_old;
-      v_new += sign * w * f.soil;
-      for (int j = 0; j < D; ++j) l[d][j] += sign * f.soil * g[j];
+      v_old += sign * weight.w * f.soil_old;
+      v_new += sign * weight.w * f.soil;
+      for (int j = 0; j < D; ++j) l[d][j] += sign * f.soil * weight.gradient[j];
+      if constexpr (S::affine) add_slope<S, D>(s.grid, weight, sign * f.soil, slope);
     });
+    if constexpr (S::affine) soil.affine[p][d] = slope;
     double& v = soil.v[p][d];
     v = mix<D>(v, v_old, v_new, pic);
     step[d] = dt * v_new;
     totals.momentum[d] += soil.mass[p] * v;
     speed2 += v * v;
   }
-  const double hoop = kAxial ? step[0] / (dt * soil.x[p][0]) : 0;  // 1/s, v_r/r
+  const double hoop = S::axial ? step[0] / (dt * soil.x[p][0]) : 0;  // 1/s, v_r/r
   totals.interventions.clipped_points += move<D>(s.grid, s.soil_walls, kernel.home, soil.x[p], step);
 
   // Dˢn/Dt = (1−n) ∇·vˢ, integrated: the grains' volume stays.
@@ -196,11 +210,11 @@ void soil_from_faces(State<D>& s, std::uint32_t p, double dt, double pic, Totals
 }
 
 /// Markers of a surface load ride on the grains.
-template <int D>
+template <class Shape, int D>
 void move_loads(State<D>& s, double dt) {
   for (SurfaceLoad<D>& load : s.loads)
     for (Vec<D>& x : load.marker) {
-      const PointKernel<D> kernel(s.grid, x);
+      const PointKernel<D, Shape> kernel(s.grid, x);
       Vec<D> step{};
       for (int d = 0; d < D; ++d)
         for_faces(s.grid, s.soil_walls, kernel, d, [&](int face, double w, double sign, const Vec<D>&) {
@@ -214,21 +228,23 @@ void move_loads(State<D>& s, double dt) {
 
 template <int D>
 void faces_to_points(State<D>& s, double dt, StepReport<D>& report) {
-  const double pic = 1 - std::exp(-s.constants.pic_rate * dt);
+  const double pic = s.constants.transfer == Transfer::apic ? 1 : 1 - std::exp(-s.constants.pic_rate * dt);
   const Supports<D> supports = support_impulses(s, dt, pic);
   report.impulse_walls = supports.walls;
   report.impulse_surface = supports.surface;
-  const Totals<D> totals = with_axial(s.grid, [&](auto axial) {
-    return s.blocks.template sum<Totals<D>>([&](int b) {
+  const Totals<D> totals = with_scheme(s, [&](auto scheme) {
+    using S = decltype(scheme);
+    const Totals<D> sum = s.blocks.template sum<Totals<D>>([&](int b) {
       Totals<D> t;
       for (auto i = s.soil_blocks.begin[b]; i < s.soil_blocks.begin[b + 1]; ++i)
-        soil_from_faces<D, axial>(s, s.soil_blocks.order[i], dt, pic, t);
+        soil_from_faces<S>(s, s.soil_blocks.order[i], dt, pic, t);
       for (auto i = s.water_blocks.begin[b]; i < s.water_blocks.begin[b + 1]; ++i)
-        water_from_faces(s, s.water_blocks.order[i], dt, pic, t);
+        water_from_faces<S>(s, s.water_blocks.order[i], dt, pic, t);
       return t;
     });
+    move_loads<typename S::Shape>(s, dt);
+    return sum;
   });
-  move_loads(s, dt);
   for (int d = 0; d < D; ++d) report.impulse_surface[d] += totals.let_go[d];
   s.momentum = report.momentum = totals.momentum;
   report.moving_mass = totals.mass;

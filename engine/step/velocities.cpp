@@ -213,13 +213,16 @@ void correct_velocities(State<D>& s, double dt) {
       }
     });
   });
+  if (s.constants.kernel == Kernel::linear) follow_leaders(s);
   // A kernel reaches 1½ cells: two rings of faces beyond the last wet one.
   for (const std::uint8_t level : {std::uint8_t{2}, std::uint8_t{3}})
     s.blocks.all([&](int b) {
       s.blocks.cells(s.grid, b, true, [&](int face, const Cell<D>&) {
         for (int d = 0; d < D; ++d) {
           FaceFlow& f = s.flow[d][face];
-          if (f.wet || s.sums[d][face].water_mass <= 0 || s.water_walls.closed(d, face)) continue;
+          if (f.wet || s.water_walls.closed(d, face)) continue;
+          // Hats reach faces at which their weight is zero and its gradient is not.
+          if (s.sums[d][face].water_mass <= 0 && s.constants.kernel != Kernel::linear) continue;
           double v;
           if (extrapolate(s, d, face, level, v)) {
             f.water = v;

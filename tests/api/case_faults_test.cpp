@@ -336,8 +336,6 @@ const Mutation not_supported_yet[] = {
     {"PowerLaw",
      ADD("/materials/soils/sand/permeability/law", R"("power")"),
      {"/materials/soils/sand/permeability/law"}},
-    {"LinearKernel", ADD("/numerics/kernel", R"("linear")"), {"/numerics/kernel"}},
-    {"Apic", ADD("/numerics/transfer", R"("apic")"), {"/numerics/transfer"}},
     {"Damping", ADD("/stages/0/damping", "0.2"), {"/stages/0/damping"}},
     {"SidewaysGravityWithK0", ADD("/gravity", "[1, -9.81]"), {"/initial/stress"}},
     {"QuasiStatic", ADD("/stages/0/quasi_static", "true"), {"/stages/0/quasi_static"}},
@@ -363,8 +361,7 @@ TEST(CaseFaultsTogether, FaultsOfAllKindsComeInOneAnswer) {
     {"op":"add","path":"/domain/sides/bottom/head","value":1},
     {"op":"add","path":"/stages/1/open_gates/-","value":"door"},
     {"op":"replace","path":"/walls/1/line/to/0","value":0.45},
-    {"op":"replace","path":"/bodies/4/region/box/min/1","value":0.23},
-    {"op":"add","path":"/numerics/kernel","value":"linear"}])");
+    {"op":"replace","path":"/bodies/4/region/box/min/1","value":0.23}])");
   text.insert(text.size() - 1, R"(,"name":"again")");  // a duplicate key
   const ParsedCase parsed = parse_case(text);
   const std::vector<std::string> expected{"/bodies/4/region",
@@ -372,7 +369,6 @@ TEST(CaseFaultsTogether, FaultsOfAllKindsComeInOneAnswer) {
                                           "/domain/sides/bottom/head",
                                           "/materials/soils/sand/porosity",
                                           "/name",
-                                          "/numerics/kernel",
                                           "/stages/1/open_gates/1",
                                           "/walls/1/line",
                                           "/walls/1/line/to"};
@@ -399,8 +395,6 @@ TEST(CaseFaultWords, SayValueRangeAndNearestKey) {
   EXPECT_NE(corner.find("cells of 0.02 m (cell_size 0.01 × cell_size_factor 2): the nearest is (0.44, 0.52)"),
             std::string::npos)
       << corner;
-  const std::string later = detail(ADD("/numerics/kernel", R"("linear")"));
-  EXPECT_NE(later.find("is not supported yet"), std::string::npos) << later;
 }
 
 TEST(CaseFaultWords, ManyFaultsAreCutShort) {

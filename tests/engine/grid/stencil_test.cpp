@@ -35,12 +35,12 @@ void at_random_places(const Grid<D>& grid, int count, F&& f) {
   }
 }
 
-template <int D>
+template <int D, class Shape>
 void expect_moments() {
   const Grid<D> grid = some_grid<D>();
   const Walls<D> open(grid);
   at_random_places(grid, 300, [&](const Vec<D>& x) {
-    const PointKernel<D> kernel(grid, x);
+    const PointKernel<D, Shape> kernel(grid, x);
     for (int d = 0; d < D; ++d) {
       double sum = 0;
       Vec<D> mean{}, gradient_sum{};
@@ -74,8 +74,45 @@ void expect_moments() {
   });
 }
 
-TEST(Stencil, WeightsSumToOneWithTheirMeanAtThePoint2D) { expect_moments<2>(); }
-TEST(Stencil, WeightsSumToOneWithTheirMeanAtThePoint3D) { expect_moments<3>(); }
+TEST(Stencil, WeightsSumToOneWithTheirMeanAtThePoint) {
+  expect_moments<2, QuadraticSpline>();
+  expect_moments<3, QuadraticSpline>();
+  expect_moments<2, LinearHat>();
+  expect_moments<3, LinearHat>();
+}
+
+/// Arms lead from the point to the faces, and the affine weights find the slope of a linear field.
+template <int D, class Shape>
+void expect_affine() {
+  const Grid<D> grid = some_grid<D>();
+  const Walls<D> open(grid);
+  at_random_places(grid, 300, [&](const Vec<D>& x) {
+    const PointKernel<D, Shape> kernel(grid, x);
+    for (int d = 0; d < D; ++d) {
+      std::array<Vec<D>, D> slope{};
+      Vec<D> sum{};
+      for_faces(grid, open, kernel, d, [&](int face, const FaceWeight<D>& f, double) {
+        const Vec<D> at = face_place(grid, d, face), a = affine_weight<Shape>(f, grid.inverse_h);
+        for (int i = 0; i < D; ++i) {
+          EXPECT_NEAR(f.arm[i], at[i] - x[i], 1e-13);
+          sum[i] += a[i];
+          for (int j = 0; j < D; ++j) slope[i][j] += a[i] * at[j];
+        }
+      });
+      for (int i = 0; i < D; ++i) {
+        EXPECT_NEAR(sum[i], 0, 1e-12);  // no slope in a uniform field
+        for (int j = 0; j < D; ++j) EXPECT_NEAR(slope[i][j], i == j, 1e-12);
+      }
+    }
+  });
+}
+
+TEST(Stencil, AffineWeightsFindTheSlopeOfALinearField) {
+  expect_affine<2, QuadraticSpline>();
+  expect_affine<3, QuadraticSpline>();
+  expect_affine<2, LinearHat>();
+  expect_affine<3, LinearHat>();
+}
 
 /// A smooth function of the face's index, so that the interpolated field is not linear.
 template <int D>
