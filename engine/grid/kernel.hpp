@@ -21,9 +21,9 @@ struct Nodes {
   double at = 0;  ///< the point's own position in the nodes' numbers
 };
 
-/// What carries water: the component's own axis as the kernel has it, hats across. The derivative of a quadratic
-/// spline is a difference of hats, so that what is interpolated has everywhere the divergence that the cells around
-/// have: points carried by it keep their volume.
+/// What carries water: the component's own axis as the kernel has it, hats across. The derivative of a
+/// quadratic spline is a difference of hats, so that what is interpolated has everywhere the divergence that
+/// the cells around have: points carried by it keep their volume.
 struct SplineMover;
 /// The same for hats, whose derivative is a difference of boxes: constant across, within a cell.
 struct HatMover;

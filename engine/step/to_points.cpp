@@ -132,7 +132,7 @@ void water_from_faces(State<D>& s, std::uint32_t p, double dt, double pic, Total
     totals.momentum[d] += water.mass[p] * v;
     speed2 += v * v;
   }
-  if (!falls) step = path<typename S::Shape>(s, water.x[p], dt);
+  if (!falls) step = path<typename S::Shape, D>(s, water.x[p], dt);
   totals.interventions.clipped_points += move<D>(s.grid, s.water_walls, kernel.home, water.x[p], step);
   totals.mass += water.mass[p];
   totals.kinetic += 0.5 * water.mass[p] * speed2;

@@ -81,6 +81,32 @@ TEST(Stencil, WeightsSumToOneWithTheirMeanAtThePoint) {
   expect_moments<3, LinearHat>();
 }
 
+/// What carries water has the divergence of the cells around: within a cell of hats everywhere the cell's own.
+TEST(Stencil, MoversKeepTheCellsDivergence) {
+  const Grid<2> grid = some_grid<2>();
+  const Walls<2> open(grid);
+  const auto flow = [](int d, int face) { return std::sin(1.7 * face + d); };
+  const auto of_cell = [&](int i) {
+    double sum = 0;
+    for (int d = 0; d < 2; ++d) sum += (flow(d, i + grid.stride[d]) - flow(d, i)) / grid.h;
+    return sum;
+  };
+  const auto at = [&](auto shape, const Vec<2>& x) {
+    double sum = 0;
+    for (int d = 0; d < 2; ++d)
+      for_faces(grid, open, PointKernel<2, decltype(shape)>(grid, x), d,
+                [&](int face, double, double, const Vec<2>& g) { sum += g[d] * flow(d, face); });
+    return sum;
+  };
+  at_random_places(grid, 100, [&](const Vec<2>& x) {
+    EXPECT_NEAR(at(HatMover{}, x), of_cell(grid.index(grid.cell_of(x))), 1e-11);
+    double around = 0;  // hats between the cells' centres
+    for_centers(grid, open, PointKernel<2, LinearHat>(grid, x),
+                [&](int cell, double w) { around += w * of_cell(cell); });
+    EXPECT_NEAR(at(SplineMover{}, x), around, 1e-11);
+  });
+}
+
 /// Arms lead from the point to the faces, and the affine weights find the slope of a linear field.
 template <int D, class Shape>
 void expect_affine() {
