@@ -87,6 +87,27 @@ void check_gate_uses(const Scene& scene, Faults& faults) {
   }
 }
 
+/// A plate pushes down and never pulls; only what is rough takes the soil along.
+void check_plate_motion(const Scene& scene, std::size_t k, Faults& faults) {
+  const Load& load = scene.loads[k];
+  const std::string force = at_index("loads", k, "/plate_force"),
+                    velocity = at_index("loads", k, "/plate_velocity");
+  const auto sideways = [](const Vec3& v) { return v[0] != 0 || v[2] != 0; };
+  if (load.plate_force) {
+    if (sideways(*load.plate_force))
+      faults.push_back({force, "only its vertical part acts: make the others 0"});
+    else if ((*load.plate_force)[1] >= 0)
+      faults.push_back({force, "does not press down: give a negative y; a plate cannot pull"});
+  } else if (sideways(load.plate_velocity)) {
+    if (scene.domain.dimension == Dimension::axisymmetric)
+      faults.push_back({velocity, "a rigid plate about an axis cannot move along the radius: make x 0"});
+    else if (!load.rough)
+      faults.push_back(
+          {velocity,
+           "sideways it has no effect, as the soil slides along a smooth plate: make it rough, or 0"});
+  }
+}
+
 void check_loads(const Scene& scene, Faults& faults) {
   for (std::size_t k = 0; k < scene.loads.size(); ++k) {
     const Load& load = scene.loads[k];
@@ -100,6 +121,7 @@ void check_loads(const Scene& scene, Faults& faults) {
       faults.push_back({at_index("loads", k, "/traction"), "zero: the load has no effect"});
     if (load.side >= BodySide::front && scene.domain.dimension != Dimension::space)
       faults.push_back({at_index("loads", k, "/side"), "front and back are sides of bodies in space only"});
+    if (load.kind == Load::Kind::plate) check_plate_motion(scene, k, faults);
     bool ever = false;
     for (std::size_t stage = 0; stage < scene.stages.size(); ++stage) ever = ever || acts(scene, stage, load);
     if (!ever)

@@ -91,6 +91,26 @@ TEST(CheckPlate, LiesOnTopOfItsBody) {
             Pointers{"/loads/0/plate"});  // past its end
 }
 
+TEST(CheckPlate, PressesDownAndTakesAlongOnlyIfRough) {
+  const auto plate = [](const std::function<void(Load&)>& change,
+                        Dimension dimension = Dimension::plane_strain) {
+    return after([&](Scene& s) {
+      s.domain.dimension = dimension;
+      s.loads = {plate_on_sand(0.2, 0.6)};
+      change(s.loads[0]);
+    });
+  };
+  EXPECT_EQ(plate([](Load& l) { l.plate_force = {0, -10, 0}; }), Pointers{});
+  EXPECT_EQ(plate([](Load& l) { l.plate_force = {0, 10, 0}; }), Pointers{"/loads/0/plate_force"});
+  EXPECT_EQ(plate([](Load& l) { l.plate_force = {1, -10, 0}; }), Pointers{"/loads/0/plate_force"});
+  const auto sliding = [](bool rough) {
+    return [rough](Load& l) { l.plate_velocity = {0.1, -0.01, 0}, l.rough = rough; };
+  };
+  EXPECT_EQ(plate(sliding(true)), Pointers{});
+  EXPECT_EQ(plate(sliding(false)), Pointers{"/loads/0/plate_velocity"});
+  EXPECT_EQ(plate(sliding(true), Dimension::axisymmetric), Pointers{"/loads/0/plate_velocity"});
+}
+
 TEST(CheckPlate, TwoMayShareAPlaceButNotAtATime) {
   Load second = plate_on_sand(0.4, 0.8);
   second.name = "second";
