@@ -60,6 +60,7 @@ Json to_json(const Ledger& l) {
           {"impulse_surface", l.impulse_surface},
           {"impulse_loads", l.impulse_loads},
           {"impulse_flow", l.impulse_flow},
+          {"impulse_stages", l.impulse_stages},
           {"momentum_residual", l.momentum_residual},
           {"energy_kinetic", l.energy_kinetic},
           {"energy_potential", l.energy_potential},
@@ -79,6 +80,15 @@ Json to_json(const HeaveReport& h) {
           {"final_rise", h.final_rise},
           {"max_rise", h.max_rise},
           {"max_point_displacement", h.max_point_displacement}};
+}
+
+Json to_json(const QuasiStaticReport& q) {
+  return {{"stage", q.stage},
+          {"inertia", q.inertia},
+          {"process_time", q.process_time},
+          {"transit_time", q.transit_time},
+          {"inertia_ratio", q.inertia_ratio},
+          {"negligible", q.negligible}};
 }
 
 const char* word_of(RunStatus status) {
@@ -105,6 +115,8 @@ std::string report_json(const Scene& scene, const Plan& plan, const RunReport& r
                        {"time", report.failure.time},
                        {"place", report.failure.place}};
   json["headline"] = report.heave.empty() ? Json(nullptr) : to_json(report.heave.front());
+  json["quasi_static"] = Json::array();
+  for (const QuasiStaticReport& stage : report.quasi_static) json["quasi_static"].push_back(to_json(stage));
   json["sim_time"] = report.sim_time;
   json["wall_seconds"] = report.wall_seconds;
   json["point_steps"] = report.point_steps;

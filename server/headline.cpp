@@ -39,6 +39,20 @@ std::string heave_text(const Json& heave) {
   return text;
 }
 
+/// Whether scaled inertia mattered, per quasi-static stage.
+std::string inertia_text(const Json& stages) {
+  std::string text;
+  for (const Json& stage : stages) {
+    const bool negligible = stage.value("negligible", false);
+    text += fmt::format(
+        "  Stage {}: inertia × {:.3g}; kinetic energy reached {:.2g} % of the strain energy, {}\n",
+        word(stage, "stage"), number(stage, "inertia"), 100 * number(stage, "inertia_ratio"),
+        negligible ? "inertia is negligible"
+                   : "INERTIA IS NOT NEGLIGIBLE: raise numerics.quasi_static_transits");
+  }
+  return text;
+}
+
 std::string cost_text(const Json& report) {
   const double wall = number(report, "wall_seconds");
   return fmt::format("  Simulated {:.4g} s in {} ({:.0f} steps, {:.3g} point-steps/s)\n",
@@ -54,6 +68,8 @@ std::string headline_text(const std::string& report) {
   std::string text = fmt::format("{}: {}\n", word(json, "name"), word(json, "status"));
   if (const auto heave = json.find("headline"); heave != json.end() && heave->is_object())
     text += heave_text(*heave);
+  if (const auto stages = json.find("quasi_static"); stages != json.end() && stages->is_array())
+    text += inertia_text(*stages);
   if (const auto ledger = json.find("ledger"); ledger != json.end() && ledger->is_object())
     text += fmt::format("  Water volume drifted by {:.2g} % at most\n",
                         100 * number(*ledger, "water_volume_drift_max"));

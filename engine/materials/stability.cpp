@@ -88,7 +88,11 @@ constexpr int kStiffnesses = 9;  // up to 655 MPa; beyond, the bound falls as 1/
 
 }  // namespace
 
-StepLimit::StepLimit(const SoilMaterial& soil, double water_density, double water_compliance, double h) {
+StepLimit::StepLimit(const SoilMaterial& soil, double water_density, double water_compliance, double h,
+                     double inertia) {
+  // With densities × s, time √s times as long and velocities as small, all terms but the drag stay as they
+  // are: the bounds are √s times those of the true densities with drag/√s.
+  const double slower = std::sqrt(inertia);
   bounds_.resize(soil.varies_stiffness() ? kStiffnesses : 1);
   double modulus = soil.varies_stiffness() ? kSoftest : soil.constrained_modulus<2>({}, soil.porosity);
   for (Bounds& b : bounds_) {
@@ -99,12 +103,13 @@ StepLimit::StepLimit(const SoilMaterial& soil, double water_density, double wate
                             water_density,
                             water_compliance,
                             n,
-                            soil.drag.resistance(n),
+                            soil.drag.resistance(n) / slower,
                             soil.shear_share * modulus};
-      b.dry[i] = dry_step_limit(s, h);
-      b.saturated[i] = std::min({coupled_step_limit(s, h), surface_step_limit(s, h), shear_step_limit(s, h)});
-      b.fast_wave[i] =
-          water_compliance > 0 ? fast_wave_step_limit(s, h) : std::numeric_limits<double>::infinity();
+      b.dry[i] = slower * dry_step_limit(s, h);
+      b.saturated[i] =
+          slower * std::min({coupled_step_limit(s, h), surface_step_limit(s, h), shear_step_limit(s, h)});
+      b.fast_wave[i] = water_compliance > 0 ? slower * fast_wave_step_limit(s, h)
+                                            : std::numeric_limits<double>::infinity();
     }
     modulus *= 4;
   }

@@ -48,7 +48,9 @@ double bounding_edge(Kernel kernel, double h);
 class StepLimit {
  public:
   StepLimit() = default;
-  StepLimit(const SoilMaterial& soil, double water_density, double water_compliance, double h);
+  /// `inertia`: what the densities of grains and water are multiplied by.
+  StepLimit(const SoilMaterial& soil, double water_density, double water_compliance, double h,
+            double inertia = 1);
   /// `modulus` is the point's elastic constrained modulus, Pa.
   double dry(double porosity, double modulus) const { return look_up(&Bounds::dry, porosity, modulus); }
   /// The smallest of coupled_step_limit, surface_step_limit and shear_step_limit.

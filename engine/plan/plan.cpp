@@ -6,6 +6,8 @@
 
 #include "engine/grid/scene_grid.hpp"
 #include "engine/materials/stability.hpp"
+#include "engine/plan/quasi_static.hpp"
+#include "engine/plan/soil_stiffness.hpp"
 #include "engine/plan/step_bounds.hpp"
 #include "engine/points/seeding.hpp"
 #include "engine/scene/region.hpp"
@@ -46,34 +48,15 @@ bool reaches_air(const Scene& scene, const Body& body, double h) {
   return false;
 }
 
-/// Constrained modulus (Pa) at the body's foot, where soil whose stiffness follows the stress is stiffest:
-/// from the weight of grains up to the highest body, or the given stress.
-double initial_modulus(const Scene& scene, const Body& body, const SoilMaterial& material) {
-  SoilState<3> state;
-  double pressure = 0;
-  const std::array<double, 6>& given = scene.initial.uniform_stress;
-  if (scene.initial.stress == InitialStress::uniform) {
-    pressure = -(given[0] + given[1] + given[2]) / 3;
-  } else {
-    double top = bounding_box(body.region).min[1];
-    for (const Body& other : scene.bodies) top = std::max(top, bounding_box(other.region).max[1]);
-    const double submerged = body.kind == BodyKind::saturated_soil ? scene.water.density : 0;
-    pressure = (1 - material.porosity) * (material.grain_density - submerged) * std::abs(scene.gravity[1]) *
-               (top - bounding_box(body.region).min[1]);
-  }
-  for (int i = 0; i < 3; ++i) state.stress[i] = -pressure;
-  return material.constrained_modulus<3>(state, material.porosity);
-}
-
-double initial_soil_limit(const Scene& scene, double h) {
+double initial_soil_limit(const Scene& scene, double h, double inertia) {
   double limit = std::numeric_limits<double>::infinity();
   for (const Body& body : scene.bodies) {
     if (body.kind == BodyKind::water || body.fixed) continue;
     const Soil& soil = scene.soils.at(body.soil);
     const double compliance = scene.water.bulk_modulus ? 1 / *scene.water.bulk_modulus : 0;
     const SoilMaterial material = SoilMaterial::from(soil, scene.water);
-    const StepLimit limits(material, scene.water.density, compliance,
-                           bounding_edge(scene.numerics.kernel, h));
+    const StepLimit limits(material, scene.water.density, compliance, bounding_edge(scene.numerics.kernel, h),
+                           inertia);
     const double n = soil.porosity, modulus = initial_modulus(scene, body, material);
     const bool confined = body.kind == BodyKind::saturated_soil && !reaches_air(scene, body, h);
     const double saturated = limits.saturated(n, modulus);
@@ -83,7 +66,7 @@ double initial_soil_limit(const Scene& scene, double h) {
 }
 
 /// StepLimit::fast_wave of the saturated soil; infinite without, or if the pressure is solved for.
-double initial_fast_wave_limit(const Scene& scene, double h) {
+double initial_fast_wave_limit(const Scene& scene, double h, double inertia) {
   double limit = std::numeric_limits<double>::infinity();
   if (scene.numerics.pressure == PressureScheme::implicit) return limit;
   for (const Body& body : scene.bodies) {
@@ -91,7 +74,7 @@ double initial_fast_wave_limit(const Scene& scene, double h) {
     const Soil& soil = scene.soils.at(body.soil);
     const SoilMaterial material = SoilMaterial::from(soil, scene.water);
     const StepLimit limits(material, scene.water.density, 1 / scene.water.bulk_modulus.value(),
-                           bounding_edge(scene.numerics.kernel, h));
+                           bounding_edge(scene.numerics.kernel, h), inertia);
     limit = std::min(limit, limits.fast_wave(soil.porosity, initial_modulus(scene, body, material)));
   }
   return limit;
@@ -136,6 +119,12 @@ void explain(const Scene& scene, Plan& plan) {
   if (plan.has_water && !scene.water.bulk_modulus) plan.reasons.push_back("Water is incompressible.");
 }
 
+StepSituation situation(const Scene& scene, const Plan& plan, double speed, double inertia) {
+  const double none = std::numeric_limits<double>::infinity(), h = plan.cell_size;
+  return {initial_soil_limit(scene, h, inertia), speed, plan.has_water,
+          plan.has_water ? initial_fast_wave_limit(scene, h, inertia) : none, inertia};
+}
+
 }  // namespace
 
 Plan make_plan(const Scene& scene) {
@@ -155,14 +144,17 @@ Plan make_plan(const Scene& scene) {
   double speed = 0;
   for (const Body& body : scene.bodies)
     speed = std::max(speed, std::hypot(body.velocity[0], body.velocity[1], body.velocity[2]));
-  const StepSituation start{initial_soil_limit(scene, plan.cell_size), speed, plan.has_water,
-                            plan.has_water ? initial_fast_wave_limit(scene, plan.cell_size)
-                                           : std::numeric_limits<double>::infinity()};
-  plan.bounds = step_bounds(scene, start);
-  plan.bound = choose_step(scene, start);
-  plan.time_step = plan.bound.seconds;
-  for (const Stage& stage : scene.stages) plan.end_time += stage.duration;
-  plan.steps = std::ceil(plan.end_time / plan.time_step);
+  for (std::size_t k = 0; k < scene.stages.size(); ++k) {
+    const StepSituation start = situation(scene, plan, speed, slow_process(scene, k).inertia);
+    const StepBound bound = choose_step(scene, start);
+    if (k == 0) {
+      plan.bounds = step_bounds(scene, start);
+      plan.bound = bound;
+      plan.time_step = bound.seconds;
+    }
+    plan.end_time += scene.stages[k].duration;
+    plan.steps += std::ceil(scene.stages[k].duration / bound.seconds);
+  }
   plan.seconds = plan.steps * static_cast<double>(plan.soil_points + plan.water_points) *
                  (plan.dimensions == 3 ? kCostInSpace : 1) / kPointStepsPerSecond;
   return plan;

@@ -1,7 +1,9 @@
 #include "engine/plan/stage_plan.hpp"
 
 #include <algorithm>
+#include <cstdio>
 
+#include "engine/plan/quasi_static.hpp"
 #include "engine/scene/stages.hpp"
 #include "engine/scene/text.hpp"
 
@@ -48,6 +50,12 @@ void say_loads(const Scene& scene, std::size_t index, Sentences& does) {
   }
 }
 
+std::string figure(double value) {
+  char words[32];
+  std::snprintf(words, sizeof words, "%.3g", value);
+  return words;
+}
+
 bool has_free_water(const Scene& scene, std::size_t index) {
   return std::any_of(scene.bodies.begin(), scene.bodies.end(), [&](const Body& body) {
     return body.kind == BodyKind::water && present(scene, index, body.name);
@@ -65,6 +73,9 @@ void say_method(const Scene& scene, std::size_t index, Sentences& does) {
     does.push_back("Quasi-static: inertia, never weight, is scaled so that a wave crosses the soil " +
                    text(scene.numerics.quasi_static_transits) +
                    " times within the process; whatever falls is slower than in nature.");
+  if (const SlowProcess slow = slow_process(scene, index); slow.inertia > 1)
+    does.push_back("Inertia is multiplied by " + figure(slow.inertia) + ": the process takes " +
+                   figure(slow.process_time) + " s and a true wave " + figure(slow.transit_time) + " s.");
   if (stage.quasi_static && has_free_water(scene, index))
     does.push_back(
         "Free water is as heavy as ever but as slow as its scaled inertia: right at rest, its waves are "

@@ -23,7 +23,7 @@ std::vector<StepBound> wave_bounds(const Scene& scene, const StepSituation& now)
   std::vector<StepBound> bounds;
   if (std::isfinite(now.soil_limit)) bounds.push_back({"soil wave", now.soil_limit});
   if (now.has_water && scene.numerics.pressure == PressureScheme::explicit_scheme) {
-    const double speed = std::sqrt(scene.water.bulk_modulus.value() / scene.water.density);
+    const double speed = std::sqrt(scene.water.bulk_modulus.value() / (now.inertia * scene.water.density));
     const double along_axis = std::min(scene.cell_size() / speed, now.fast_wave_limit);
     bounds.push_back({"water wave", along_axis / std::sqrt(kTransferLoss * dimensions_of(scene))});
   }
@@ -38,10 +38,10 @@ std::vector<StepBound> step_bounds(const Scene& scene, const StepSituation& now)
   std::vector<StepBound> bounds = wave_bounds(scene, now);
   if (now.max_speed > 0) bounds.push_back({"motion", 0.5 * h / now.max_speed});
   const double g = std::hypot(scene.gravity[0], scene.gravity[1], scene.gravity[2]);
-  if (now.has_water && g > 0) bounds.push_back({"surface wave", std::sqrt(h / g)});
+  if (now.has_water && g > 0) bounds.push_back({"surface wave", std::sqrt(now.inertia * h / g)});
   const double nu = scene.water.viscosity / scene.water.density;
   if (now.has_water && nu > 0)
-    bounds.push_back({"viscosity", h * h / (2 * (dimensions_of(scene) + axial) * nu)});
+    bounds.push_back({"viscosity", now.inertia * h * h / (2 * (dimensions_of(scene) + axial) * nu)});
   return bounds;
 }
 

@@ -15,6 +15,7 @@ struct StepSituation {
   bool has_water = true;
   /// s, smallest StepLimit::fast_wave of any saturated soil point; infinite unless the pressure is explicit.
   double fast_wave_limit = std::numeric_limits<double>::infinity();
+  double inertia = 1;  ///< –, of a quasi-static stage; the limits of soil hold it already
 };
 
 /// All bounds of the next time step, before the scene's safety factor; each with its name:

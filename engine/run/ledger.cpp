@@ -57,11 +57,16 @@ void LedgerKeeper<D>::add(const State<D>& s, const StepReport<D>& step) {
     l.impulse_flow[d] += step.exchange.momentum[d];
     l.momentum_change[d] = step.momentum[d] - start_momentum_[d];
     const double open = l.momentum_change[d] - l.impulse_gravity[d] - l.impulse_walls[d] -
-                        l.impulse_surface[d] - l.impulse_loads[d] - l.impulse_flow[d];
+                        l.impulse_surface[d] - l.impulse_loads[d] - l.impulse_flow[d] - l.impulse_stages[d];
     residual += open * open;
   }
   driving_impulse_ += std::sqrt(driving);
   l.momentum_residual = driving_impulse_ > 0 ? std::sqrt(residual) / driving_impulse_ : 0;
+}
+
+template <int D>
+void LedgerKeeper<D>::add(const StageChange<D>& change) {
+  for (int d = 0; d < D; ++d) ledger_.impulse_stages[d] += change.impulse[d];
 }
 
 template <int D>

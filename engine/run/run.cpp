@@ -12,6 +12,7 @@
 #include "engine/run/diagnosis.hpp"
 #include "engine/run/frame.hpp"
 #include "engine/run/setup.hpp"
+#include "engine/run/stage.hpp"
 #include "engine/run/watch.hpp"
 #include "engine/step/phases.hpp"
 
@@ -35,7 +36,7 @@ class Run {
         ledger_(scene, state_),
         watch_(scene) {
     for (const Stage& stage : scene.stages) end_time_ += stage.duration;
-    set_first_limits();
+    set_limits();
     measure_motion(state_, last_);
   }
 
@@ -44,9 +45,8 @@ class Run {
     stage_name_ = scene_.stages.front().name;
     write_sample();
     write_frame();
-    for (const Stage& stage : scene_.stages) {
-      if (!run_stage(stage)) break;
-    }
+    for (std::size_t k = 0; k < scene_.stages.size(); ++k)
+      if (!run_stage(k)) break;
     if (last_.finite && last_sample_time_ < state_.time) write_sample();
     if (last_.finite && last_frame_time_ < state_.time) write_frame();
     finish();
@@ -55,9 +55,10 @@ class Run {
 
  private:
   /// False when the run has ended before its time.
-  bool run_stage(const Stage& stage) {
+  bool run_stage(std::size_t index) {
+    const Stage& stage = scene_.stages[index];
     stage_name_ = stage.name;
-    enter_stage(scene_, stage, state_);
+    begin_stage(index);
     monitor_.log("stage " + stage.name + " begins at " + text(state_.time) + " s");
     const double begin = state_.time, end = begin + stage.duration;
     long rest_steps = 0;
@@ -79,9 +80,19 @@ class Run {
     return true;
   }
 
+  void begin_stage(std::size_t index) {
+    const double inertia = state_.constants.inertia;
+    ledger_.add(quicksand::begin_stage(scene_, index, state_));
+    if (state_.constants.inertia != inertia) {
+      set_limits();
+      first_step_ = 0;
+    }
+    inertia_.begin(scene_, index, state_.time);
+  }
+
   bool step(double stage_end) {
-    const StepSituation now{last_.soil_limit, last_.max_speed, state_.water.size() > 0,
-                            last_.fast_wave_limit};
+    const StepSituation now{last_.soil_limit, last_.max_speed, state_.water.size() > 0, last_.fast_wave_limit,
+                            state_.constants.inertia};
     const StepBound chosen = choose_step(scene_, now);
     if (chosen.seconds < kCollapse * first_step(chosen.seconds))
       return fail(collapsed_step(scene_, state_, chosen));
@@ -95,6 +106,7 @@ class Run {
     iterations_ += last_.pressure.iterations;
     if (!last_.finite) return fail(not_finite(scene_, state_));
     ledger_.add(state_, last_);
+    inertia_.add(state_.time, last_);
     watch_.track(state_);
     if (!last_.pressure.converged) return fail(pressure_not_found(scene_, state_, last_.pressure.residual));
     if (due(last_sample_time_, scene_.output.series_interval)) write_sample();
@@ -157,6 +169,7 @@ class Run {
     ledger_.measure(state_, last_);
     report_.ledger = ledger_.ledger();
     report_.heave = watch_.heave();
+    report_.quasi_static = inertia_.reports();
     report_.sim_time = state_.time;
     report_.wall_seconds = seconds_since(start_);
     report_.point_steps =
@@ -167,7 +180,8 @@ class Run {
       report_.phases.push_back({kPhaseNames[i], state_.phase_seconds[i]});
   }
 
-  void set_first_limits() {
+  /// Step limits of the soil before the first step tells them.
+  void set_limits() {
     double limit = std::numeric_limits<double>::infinity(), fast_wave = limit;
     for (std::size_t p = 0; p < state_.soil.size(); ++p) {
       const int k = state_.soil.soil[p];
@@ -206,6 +220,7 @@ class Run {
   State<D> state_;
   LedgerKeeper<D> ledger_;
   Watch<D> watch_;
+  InertiaWatch inertia_;
   StepReport<D> last_;
   RunReport report_;
   std::string stage_name_;

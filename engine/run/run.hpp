@@ -76,16 +76,28 @@ struct Ledger {
   double water_volume_initial = 0, water_volume = 0;  ///< m³, room filled by water below its surface
   double water_in = 0, water_out = 0, soil_out = 0;   ///< kg, through reservoirs and open sides
   double water_volume_drift_max = 0;                  ///< largest |V − V0 − (in − out)/ρw| / V0
-  std::array<double, 3> momentum_change{};            ///< N·s, Σ m v now less at the start
+  std::array<double, 3> momentum_change{};  ///< N·s, Σ m v now less at the start; m × inertia if scaled
   std::array<double, 3> impulse_gravity{}, impulse_walls{}, impulse_loads{};  ///< N·s
   std::array<double, 3> impulse_surface{};  ///< N·s, to drops that the water surface carries along
   std::array<double, 3> impulse_flow{};     ///< N·s, momentum of what came in less what left
+  std::array<double, 3> impulse_stages{};   ///< N·s, given where a stage begins: inertia scaled back
   double momentum_residual = 0;  ///< |change − Σ impulses| / (∫ |weight, loads| dt + |at the start|)
   double energy_kinetic = 0, energy_potential = 0, energy_strain = 0;  ///< J
   long clipped_points = 0;  ///< positions put back in front of a wall
   long clamped_values = 0;
   long deleted_points = 0;
   long cut_steps = 0;  ///< steps repeated with a smaller time step
+};
+
+/// A stage with scaled inertia, and whether it mattered.
+struct QuasiStaticReport {
+  std::string stage;
+  double inertia = 1;       ///< –, what inertia was multiplied by
+  double process_time = 0;  ///< s, see engine/plan/quasi_static.hpp
+  double transit_time = 0;  ///< s, of a wave with the scaled inertia
+  /// –, largest kinetic over strain energy, after the first tenth of the process time
+  double inertia_ratio = 0;
+  bool negligible = true;  ///< whether the ratio stayed below 0.01
 };
 
 /// Headline figures of a watched body (Output::heave).
@@ -117,7 +129,8 @@ struct RunReport {
   RunStatus status = RunStatus::succeeded;
   Failure failure;  ///< if failed
   Ledger ledger;
-  std::vector<HeaveReport> heave;  ///< empty or one
+  std::vector<HeaveReport> heave;               ///< empty or one
+  std::vector<QuasiStaticReport> quasi_static;  ///< per quasi-static stage that was begun
   double sim_time = 0, wall_seconds = 0, point_steps = 0;
   long steps = 0;
   double time_step_min = 0, time_step_max = 0;

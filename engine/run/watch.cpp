@@ -102,6 +102,7 @@ Watch<D>::Watch(const Scene& scene) : scene_(scene) {
   for (std::size_t b = 0; b < scene.bodies.size(); ++b)
     if (scene.bodies[b].kind != BodyKind::water && !scene.bodies[b].fixed)
       moving_soil_.push_back(static_cast<int>(b));
+  for (const Stage& stage : scene.stages) quasi_static_ = quasi_static_ || stage.quasi_static;
   if (!scene.output.heave) return;
   HeaveReport report;
   for (const Body& body : scene.bodies)
@@ -154,6 +155,7 @@ std::vector<SeriesInfo> Watch<D>::info() const {
   all.push_back({"ledger.impulse_walls", "N·s", 3});
   all.push_back({"ledger.impulse_surface", "N·s", 3});
   all.push_back({"ledger.impulse_loads", "N·s", 3});
+  all.push_back({"ledger.impulse_stages", "N·s", 3});
   all.push_back({"ledger.clipped_points", "1", 1});
   all.push_back({"ledger.clamped_values", "1", 1});
   all.push_back({"ledger.cut_steps", "1", 1});
@@ -161,6 +163,10 @@ std::vector<SeriesInfo> Watch<D>::info() const {
   all.push_back({"pressure_iterations", "1", 1});
   all.push_back({"max_speed", "m/s", 1});
   all.push_back({"max_soil_speed", "m/s", 1});
+  if (quasi_static_) {
+    all.push_back({"quasi_static.inertia", "1", 1});
+    all.push_back({"quasi_static.inertia_ratio", "1", 1});
+  }
   return all;
 }
 
@@ -183,11 +189,16 @@ std::vector<double> Watch<D>::sample(const State<D>& s, const StepReport<D>& ste
   }
   out.insert(out.end(), {energy, l.energy_kinetic, l.energy_potential, l.energy_strain});
   for (int d = 0; d < 3; ++d) out.push_back(d < D ? step.momentum[d] : 0);
-  for (const auto* impulse : {&l.impulse_gravity, &l.impulse_walls, &l.impulse_surface, &l.impulse_loads})
+  for (const auto* impulse :
+       {&l.impulse_gravity, &l.impulse_walls, &l.impulse_surface, &l.impulse_loads, &l.impulse_stages})
     out.insert(out.end(), impulse->begin(), impulse->end());
   out.insert(out.end(), {static_cast<double>(l.clipped_points), static_cast<double>(l.clamped_values),
                          static_cast<double>(l.cut_steps), step.dt,
                          static_cast<double>(step.pressure.iterations), step.max_speed, step.max_soil_speed});
+  if (quasi_static_) {
+    out.push_back(s.constants.inertia);
+    out.push_back(inertia_ratio(step.kinetic, step.strain));
+  }
   sample_rise(s);
   return out;
 }

@@ -2,6 +2,7 @@
 // Time histories of a run: probes, bodies, the ledger; and the headline figures of a heave.
 
 #include "engine/run/run.hpp"
+#include "engine/run/stage.hpp"
 #include "engine/step/step.hpp"
 
 namespace quicksand {
@@ -13,6 +14,8 @@ class LedgerKeeper {
   LedgerKeeper(const Scene& scene, const State<D>& start);
   /// After every step.
   void add(const State<D>& state, const StepReport<D>& step);
+  /// At the start of every stage.
+  void add(const StageChange<D>& change);
   /// Volumes, masses, energies; before each sample.
   void measure(const State<D>& state, const StepReport<D>& step);
   const Ledger& ledger() const { return ledger_; }
@@ -42,6 +45,7 @@ class Watch {
   std::vector<int> moving_soil_;  ///< bodies
   std::vector<HeaveReport> heave_;
   bool ports_ = false;         ///< water can enter or leave
+  bool quasi_static_ = false;  ///< some stage is
   double probe_distance_ = 0;  ///< m, along gravity, between the probes of the heave watch
 };
 

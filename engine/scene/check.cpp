@@ -43,7 +43,6 @@ void check_supported(const Scene& scene, Faults& faults) {
     const Stage& stage = scene.stages[k];
     refuse(!stage.remove_bodies.empty(), at_index("stages", k, "/remove_bodies"), "removing bodies");
     refuse(stage.damping > 0, at_index("stages", k, "/damping"), "damping");
-    refuse(stage.quasi_static, at_index("stages", k, "/quasi_static"), "quasi_static");
   }
 }
 

@@ -69,6 +69,11 @@ void check_stage(const Scene& scene, std::size_t index, Faults& faults) {
     faults.push_back(
         {here("/until_rest/at_least"), text(stage.until_rest->at_least) + " s is not below the duration " +
                                            text(stage.duration) + " s: the stage could not end at rest"});
+  const bool moves = std::any_of(scene.bodies.begin(), scene.bodies.end(), [&](const Body& body) {
+    return body.kind != BodyKind::water && !body.fixed && present(scene, index, body.name);
+  });
+  if (stage.quasi_static && !moves)
+    faults.push_back({here("/quasi_static"), "no soil moves in this stage: water alone has no slow process"});
   check_references(stage.open_gates, scene.gates, here("/open_gates"), "gate", faults);
   if (stage.loads) check_references(*stage.loads, scene.loads, here("/loads"), "load", faults);
   check_changes(scene, index, faults);

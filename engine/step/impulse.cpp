@@ -1,10 +1,10 @@
 // What walls do to the momentum of the points, for the ledger.
 //
-// A face hands Δv to the points with the mass M that they left on it, so the points gain Σ M Δv, less what
-// goes to mirror images. Drag between the phases cancels face by face; weight is counted elsewhere. What is
-// left are the reactions of supports: of the effective stress (its forces sum to zero but for walls), of the
-// pressure (over all material, ∫∇p dV is the pressure on its walls, as p = 0 on the free surface), of fixed
-// grains, of contact, of the mirrors, and the shear of the water on no-slip walls.
+// A face hands Δv to the points with the mass M (× inertia) that they left on it, so they gain Σ M Δv, less
+// what goes to mirror images. Drag between the phases cancels face by face; weight is counted elsewhere. What
+// is left are the reactions of supports: of the effective stress (its forces sum to zero but for walls), of
+// the pressure (over all material, ∫∇p dV is the pressure on its walls, as p = 0 on the free surface), of
+// fixed grains, of contact, of the mirrors, and the shear of the water on no-slip walls.
 
 #include "engine/step/phases.hpp"
 
@@ -17,11 +17,11 @@ double soil_reaction(const State<D>& s, int d, int face, double dt) {
   const FaceFlow& f = s.flow[d][face];
   if (sums.soil_mass <= kMassCutoff * s.constants.water_density * s.volume.face(d, face)) return 0;
   const double change = f.soil - f.soil_old;
-  const double mirrored = -s.image[d][face].soil * change;
+  const double mirrored = -s.constants.inertia * s.image[d][face].soil * change;
   const bool stopped = s.soil_walls.closed(d, face) && f.soil == 0;
   if (stopped) {
     const double drag = f.exchange * s.volume.face(d, face);
-    return mirrored + sums.soil_mass * (change - dt * s.constants.gravity[d]) - drag;
+    return mirrored + s.constants.inertia * sums.soil_mass * (change - dt * s.constants.fall(d)) - drag;
   }
   const double pressure = feels_pressure(s, d, face) ? -sums.grains * felt_gradient(s, d, face) : 0;
   return mirrored + dt * (sums.soil_force + pressure);
@@ -32,7 +32,7 @@ double water_reaction(const State<D>& s, int d, int face, double dt) {
   const FaceSums& sums = s.sums[d][face];
   const FaceFlow& f = s.flow[d][face];
   if (s.water_walls.closed(d, face)) return -dt * sums.water_mass * s.constants.gravity[d];
-  const double mirrored = -s.image[d][face].water * (f.water - f.water_old);
+  const double mirrored = -s.constants.inertia * s.image[d][face].water * (f.water - f.water_old);
   if (f.wet > 1) return mirrored;  // carried along by the surface
   const double rho = s.constants.water_density, pressure = f.wet ? felt_gradient(s, d, face) : 0;
   return mirrored + dt * sums.water_mass * (f.viscous - (pressure + f.fixed_drag * f.water / f.n) / rho);
@@ -44,7 +44,7 @@ double surface_support(const State<D>& s, int d, int face, double dt) {
   const FaceSums& sums = s.sums[d][face];
   const FaceFlow& f = s.flow[d][face];
   if (f.wet < 2) return 0;
-  return sums.water_mass * (f.water - f.water_old - dt * s.constants.gravity[d]) +
+  return s.constants.inertia * sums.water_mass * (f.water - f.water_old - dt * s.constants.fall(d)) +
          f.exchange * s.volume.face(d, face);
 }
 
@@ -88,7 +88,8 @@ Supports<D> support_impulses(const State<D>& s, double dt, double pic) {
   // Relaxing points to the grid's velocity keeps momentum but for what mirrors took from the grid.
   Supports<D> impulse;
   for (int d = 0; d < D; ++d) {
-    impulse.walls[d] = sum.reaction[d] - dt * s.load_force[d] + pic * (sum.grid[d] - s.momentum[d]);
+    impulse.walls[d] =
+        sum.reaction[d] - dt * s.load_force[d] + pic * (s.constants.inertia * sum.grid[d] - s.momentum[d]);
     impulse.surface[d] = sum.surface[d];
   }
   return impulse;

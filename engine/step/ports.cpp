@@ -300,7 +300,10 @@ void pass_ports(State<D>& s, StepReport<D>& report) {
   WaterPass<D>(s, report.dt, report.exchange).run();
   const auto open_side = [](const Port<D>& port) { return port.reservoir < 0; };
   if (std::any_of(s.ports.begin(), s.ports.end(), open_side)) lose_soil(s, report.exchange);
-  for (int d = 0; d < D; ++d) report.momentum[d] = s.momentum[d] += report.exchange.momentum[d];
+  for (int d = 0; d < D; ++d) {
+    report.exchange.momentum[d] *= s.constants.inertia;
+    report.momentum[d] = s.momentum[d] += report.exchange.momentum[d];
+  }
 }
 
 template void set_ports<2>(State<2>&);

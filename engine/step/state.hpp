@@ -61,7 +61,7 @@ struct FaceFlow {
   double drag = 0;        ///< N·s/m⁴ per cell volume, between the phases
   double fixed_drag = 0;  ///< N·s/m⁴ on the water, of grains that do not move
   double exchange = 0;    ///< N·s/m³, impulse of the drag on the grains in this step
-  double viscous = 0;     ///< m/s², acceleration of the water by viscosity
+  double viscous = 0;     ///< N/kg, force of the viscosity on the water
 
   double flux() const { return phi * soil + n * water; }
   double flux_response() const { return phi * soil_response + n * water_response; }
@@ -96,11 +96,15 @@ struct Interventions {
 /// Constants of a run.
 template <int D>
 struct Constants {
-  Vec<D> gravity{};             ///< m/s²
-  double water_density = 1000;  ///< kg/m³
-  double water_compliance = 0;  ///< 1/Pa, 1/Kw; 0: incompressible
-  double viscosity = 0;         ///< Pa·s
-  double pic_rate = 0;          ///< 1/s
+  Vec<D> gravity{};  ///< m/s²
+  /// –, ≥ 1: what inertia, never weight, is multiplied by (plan/quasi_static.hpp). Points keep their true
+  /// masses; momenta, kinetic energy and the masses that forces accelerate are `inertia` times as large.
+  double inertia = 1;
+  double fall(int d) const { return gravity[d] / inertia; }  ///< m/s², by weight alone
+  double water_density = 1000;                               ///< kg/m³
+  double water_compliance = 0;                               ///< 1/Pa, 1/Kw; 0: incompressible
+  double viscosity = 0;                                      ///< Pa·s
+  double pic_rate = 0;                                       ///< 1/s
   double pressure_tolerance = 1e-6;
   double drift_time = 0;  ///< s; 0: no feedback
   Kernel kernel = Kernel::quadratic;
@@ -199,7 +203,7 @@ struct State {
   PressureSystem<D> pressure_system;
 
   double time = 0;      ///< s
-  Vec<D> momentum{};    ///< N·s, Σ m v of all moving points
+  Vec<D> momentum{};    ///< N·s, Σ m v of all moving points, × inertia
   Vec<D> load_force{};  ///< N, of the surface loads in this step
   Interventions interventions;
   std::array<double, kPhaseNames.size()> phase_seconds{};  ///< wall time

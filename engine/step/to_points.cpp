@@ -118,7 +118,7 @@ void water_from_faces(State<D>& s, std::uint32_t p, double dt, double pic, Total
     Vec<D> slope{};
     for_faces(s.grid, s.water_walls, kernel, d, [&](int face, const FaceWeight<D>& weight, double sign) {
       const FaceFlow& f = s.flow[d][face];
-      const double lift = falls && f.wet > 1 ? f.water - f.water_old - dt * s.constants.gravity[d] : 0;
+      const double lift = falls && f.wet > 1 ? f.water - f.water_old - dt * s.constants.fall(d) : 0;
       v_old += sign * weight.w * f.water_old;
       v_new += sign * weight.w * (f.water - lift);
       carried += sign * weight.w * lift;
@@ -245,10 +245,13 @@ void faces_to_points(State<D>& s, double dt, StepReport<D>& report) {
     move_loads<typename S::Shape>(s, dt);
     return sum;
   });
-  for (int d = 0; d < D; ++d) report.impulse_surface[d] += totals.let_go[d];
-  s.momentum = report.momentum = totals.momentum;
+  const double inertia = s.constants.inertia;
+  for (int d = 0; d < D; ++d) {
+    report.impulse_surface[d] += inertia * totals.let_go[d];
+    s.momentum[d] = report.momentum[d] = inertia * totals.momentum[d];
+  }
   report.moving_mass = totals.mass;
-  report.kinetic = totals.kinetic;
+  report.kinetic = inertia * totals.kinetic;
   report.strain = totals.strain;
   report.max_speed = std::sqrt(totals.max_speed2);
   report.max_soil_speed = std::sqrt(totals.max_soil_speed2);
@@ -265,7 +268,7 @@ void measure_motion(const State<D>& s, StepReport<D>& report) {
     for (std::size_t p = 0; p < set.size(); ++p) {
       double speed2 = 0;
       for (double c : set.v[p]) speed2 += c * c;
-      report.kinetic += 0.5 * set.mass[p] * speed2;
+      report.kinetic += 0.5 * s.constants.inertia * set.mass[p] * speed2;
       report.moving_mass += set.mass[p];
       report.max_speed = std::max(report.max_speed, std::sqrt(speed2));
     }

@@ -31,7 +31,7 @@ constexpr double kLeastWetPart = 0.1;
 
 /// Momentum balance of one face, per unit volume, before the pressure gradient.
 struct Balance {
-  double soil_mass = 0, soil_momentum = 0;  ///< kg/m³; incl. dt × forces
+  double soil_mass = 0, soil_momentum = 0;  ///< kg/m³, × inertia; incl. dt × forces
   double water_mass = 0, water_momentum = 0;
   double drag = 0;        ///< dt × R on the grains, kg/m³
   double water_drag = 0;  ///< the same on the water; see below
@@ -91,7 +91,8 @@ void predict_face(State<D>& s, int d, int face, double dt) {
   const FaceSums& sums = s.sums[d][face];
   FaceFlow& f = s.flow[d][face];
   f = {};
-  const double volume = s.volume.face(d, face), g = s.constants.gravity[d], rho = s.constants.water_density;
+  const double volume = s.volume.face(d, face), rho = s.constants.water_density;
+  const double inertia = s.constants.inertia, fall = s.constants.fall(d);
   const bool soil = sums.soil_mass > kMassCutoff * rho * volume;
   const bool water_open = !s.water_walls.closed(d, face);
   const bool water = water_open && sums.water_mass > kMassCutoff * rho * volume;
@@ -116,8 +117,8 @@ void predict_face(State<D>& s, int d, int face, double dt) {
   f.n = std::max(1 - f.phi - fixed_phi, kMinRoom);
   if (soil) {
     f.soil_old = sums.soil_momentum / sums.soil_mass;
-    b.soil_mass = sums.soil_mass / (part * volume);
-    b.soil_momentum = b.soil_mass * (f.soil_old + dt * g) + dt * sums.soil_force / (part * volume);
+    b.soil_mass = inertia * sums.soil_mass / (part * volume);
+    b.soil_momentum = b.soil_mass * (f.soil_old + dt * fall) + dt * sums.soil_force / (part * volume);
   }
   if (water || f.wet) {
     // Inertia of a wet face is that of a full one, n ρw, not of the few drops whose kernels reach it; where
@@ -125,9 +126,9 @@ void predict_face(State<D>& s, int d, int face, double dt) {
     const double full = f.n * rho;
     const double there = f.wet ? 1 : std::min(1.0, sums.water_mass / (volume * full));
     f.water_old = water ? sums.water_momentum / sums.water_mass : 0;
-    b.water_mass = there * full;
+    b.water_mass = inertia * there * full;
     f.viscous = water && s.constants.viscosity > 0 ? viscous_acceleration(s, d, face) : 0;
-    b.water_momentum = b.water_mass * (f.water_old + dt * (g + f.viscous));
+    b.water_momentum = b.water_mass * (f.water_old + dt * (fall + f.viscous / inertia));
     b.drag = dt * there * f.n * f.n * sums.resistivity / (part * volume);
     f.drag = b.drag / dt * part;
     const double share = f.wet ? sums.water_mass / (part * volume * full) : 1;

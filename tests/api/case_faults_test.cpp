@@ -157,7 +157,6 @@ const Mutation not_supported_yet[] = {
      {"/materials/soils/sand/permeability/law"}},
     {"Damping", ADD("/stages/0/damping", "0.2"), {"/stages/0/damping"}},
     {"SidewaysGravityWithK0", ADD("/gravity", "[1, -9.81]"), {"/initial/stress"}},
-    {"QuasiStatic", ADD("/stages/0/quasi_static", "true"), {"/stages/0/quasi_static"}},
     {"RemoveBodies", ADD("/stages/1/remove_bodies", R"(["pond"])"), {"/stages/1/remove_bodies"}},
     {"Plate",
      SET("/loads/0",

@@ -36,6 +36,16 @@ TEST(HeadlineText, SaysWhenTheSandMovedAndUnderWhatGradient) {
     expect_holds(text, part);
 }
 
+TEST(HeadlineText, SaysWhetherScaledInertiaMattered) {
+  RunReport report;
+  report.quasi_static = {{"settle", 2.5e7, 1e6, 5e3, 0.0003, true}, {"dig", 4, 10, 5, 0.2, false}};
+  const std::string text = headline(report);
+  for (const char* part :
+       {"Stage settle: inertia × 2.5e+07", "0.03 % of the strain energy, inertia is negligible", "Stage dig",
+        "20 % of the strain energy, INERTIA IS NOT NEGLIGIBLE"})
+    expect_holds(text, part);
+}
+
 TEST(HeadlineText, SaysWhenItDidNotMove) {
   RunReport report = heaved();
   report.heave[0].moved = false;

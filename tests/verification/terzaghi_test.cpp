@@ -36,7 +36,7 @@ double consolidation(double t) {
 }
 
 /// The case with another permeability, over T = 0…1, on a column two cells wide.
-Scene column(double permeability, int cells) {
+Scene column(double permeability, int cells, bool quasi_static) {
   Scene s = load_case("terzaghi", 20.0 / cells);
   const double h = s.cell_size(), seconds = kHeight * kHeight * 9810 / (permeability * kModulus);
   s.domain.max = {2 * h, kHeight + 4 * h, 0};
@@ -44,6 +44,7 @@ Scene column(double permeability, int cells) {
   s.output.probes[0].at[0] = h;
   s.soils.at("soil").permeability.value = permeability;
   s.stages[0].duration = seconds;
+  s.stages[0].quasi_static = quasi_static;
   s.output.frame_interval = seconds / 100;
   s.output.series_interval = seconds / 200;
   return s;
@@ -66,10 +67,11 @@ double settlement(const Frame& frame, double spacing) {
 
 struct Errors {
   double pressure = 0, consolidation = 0;
+  long steps = 0;
 };
 
-Errors run_column(Page& page, double permeability, int cells, bool curves) {
-  const Recorded r = page.run(column(permeability, cells));
+Errors run_column(Page& page, double permeability, int cells, bool quasi_static) {
+  const Recorded r = page.run(column(permeability, cells, quasi_static));
   Errors e;
   const double spacing = kHeight / cells / 2;
   const double end = r.results.times.back();
@@ -93,15 +95,22 @@ Errors run_column(Page& page, double permeability, int cells, bool curves) {
         e.pressure = std::max(e.pressure, std::abs(all[i] / kLoad - pressure(t, std::max(z, 0.0))));
     }
   }
-  if (curves) page.curve(base), page.curve(degree);
+  page.curve(base), page.curve(degree);
+  e.steps = r.report.steps;
+  if (quasi_static) {
+    EXPECT_TRUE(r.report.quasi_static.at(0).negligible);
+    page.value("largest kinetic over strain energy", r.report.quasi_static.at(0).inertia_ratio, "–");
+    page.value("inertia multiplied by", r.report.quasi_static.at(0).inertia, "–");
+  }
   return e;
 }
 
-Errors terzaghi_page(double permeability, int cells, double held_to) {
+Errors terzaghi_page(double permeability, int cells, double held_to, bool quasi_static = false) {
   char size[64];
-  std::snprintf(size, sizeof size, "k = %g m/s, %d cells", permeability, cells);
+  std::snprintf(size, sizeof size, "k = %g m/s, %d cells%s", permeability, cells,
+                quasi_static ? ", quasi-static" : "");
   Page page("terzaghi", size);
-  const Errors e = run_column(page, permeability, cells, true);
+  const Errors e = run_column(page, permeability, cells, quasi_static);
   page.error("pressure at all points", e.pressure, held_to, "of the load");
   page.error("degree of consolidation", e.consolidation, held_to, "–");
   return e;
@@ -119,6 +128,21 @@ TEST(Terzaghi, ConvergesWithTheCells) {
               std::log2(middle.consolidation / fine.consolidation));
   EXPECT_GE(0.5 * std::log2(coarse.pressure / fine.pressure), 1.5);
   EXPECT_GE(0.5 * std::log2(coarse.consolidation / fine.consolidation), 1.5);
+}
+
+/// Days to years in the same number of steps.
+TEST(Terzaghi, QuasiStaticCostsTheSameAtAnyPermeability) {
+  long least = std::numeric_limits<long>::max(), most = 0;
+  for (const double k : {1e-6, 1e-9, 1e-11}) {
+    const Errors e = terzaghi_page(k, 20, 0.01, true);
+    least = std::min(least, e.steps), most = std::max(most, e.steps);
+  }
+  EXPECT_LE(most, 20000);
+  EXPECT_LE(static_cast<double>(most), 1.02 * static_cast<double>(least));
+}
+
+TEST(SlowTerzaghi, QuasiStaticFineCells) {
+  for (const double k : {1e-6, 1e-11}) terzaghi_page(k, 80, 0.003, true);
 }
 
 /// The load's wave needs T = 0.017 to cross the column: what is left of it bounds the error here.
