@@ -27,6 +27,29 @@ void check_block(const Scene& scene, const Region& block, const std::string& poi
   check_corner(scene, block.max, pointer + "/box/max", faults);
 }
 
+/// Walls that another one makes idle. A no-slip line on a smooth block is not: it makes that face rough.
+void check_hidden(const Scene& scene, const Patches& lines, Faults& faults) {
+  std::vector<std::optional<CellBox>> blocks;
+  for (const Wall& wall : scene.walls)
+    blocks.push_back(is_box(wall.block) ? std::optional(cell_box(scene, *wall.block)) : std::nullopt);
+  for (std::size_t j = 0; j < blocks.size(); ++j) {
+    if (!blocks[j]) continue;
+    const CellBox& block = *blocks[j];
+    const std::string words = "\"" + scene.walls[j].name + "\" and has no effect: remove it";
+    for (std::size_t k = 0; k < blocks.size(); ++k) {
+      if (j == k) continue;
+      const bool roughens = scene.walls[k].no_slip && !scene.walls[j].no_slip;
+      const bool buried =
+          lines[k] && within(beside(*lines[k], 0), block) && within(beside(*lines[k], 1), block);
+      if (lines[k] && covers(block, *lines[k]) && (buried || !roughens))
+        faults.push_back({at_index("walls", k, "/line"), "lies in or on the block " + words});
+      const bool twin_to_come = blocks[k] == block && k < j;  // of two alike the later is idle
+      if (blocks[k] && within(*blocks[k], block) && !twin_to_come)
+        faults.push_back({at_index("walls", k, "/block"), "lies within the block " + words});
+    }
+  }
+}
+
 Patches check_walls(const Scene& scene, Faults& faults) {
   Patches lines(scene.walls.size());
   for (std::size_t k = 0; k < scene.walls.size(); ++k) {
@@ -139,6 +162,7 @@ bool check_grid(const Scene& scene, Faults& faults) {
 
 void check_lines(const Scene& scene, Faults& faults) {
   const Patches walls = check_walls(scene, faults);
+  check_hidden(scene, walls, faults);
   check_gates(scene, walls, faults);
   check_reservoirs(scene, faults);
   check_sections(scene, faults);

@@ -30,6 +30,7 @@ bool overlap(const GridPatch& a, const GridPatch& b);      ///< they share a fac
 /// Cells from `low` (held) to `high` (not held).
 struct CellBox {
   std::array<long, 3> low{}, high{};
+  bool operator==(const CellBox&) const = default;
 };
 CellBox cell_box(const Scene& scene, const Region& box);
 /// The layer of cells beside the patch on its lower (0) or upper (1) side.

@@ -7,6 +7,28 @@ namespace {
 
 using namespace test;
 
+TEST(CheckWall, HiddenOnesAreIdle) {
+  const auto beside_block = [](const std::function<void(Wall&)>& change) {
+    return after([&](Scene& s) {
+      s.walls.resize(2);
+      s.walls[0].name = "block", s.walls[0].block = box(0.4, 0.6, 0.8, 1);
+      s.walls[1].name = "other";
+      change(s.walls[1]);
+    });
+  };
+  const auto line = [](double x, double y0, double y1, bool no_slip) {
+    return [=](Wall& w) { w.line = Segment{{x, y0, 0}, {x, y1, 0}}, w.no_slip = no_slip; };
+  };
+  EXPECT_EQ(beside_block(line(0.3, 0.6, 0.8, false)), Pointers{});
+  EXPECT_EQ(beside_block(line(0.4, 0.6, 0.8, false)), Pointers{"/walls/1/line"});
+  EXPECT_EQ(beside_block(line(0.4, 0.6, 0.8, true)), Pointers{});  // makes the face rough
+  EXPECT_EQ(beside_block(line(0.6, 0.6, 0.8, true)), Pointers{"/walls/1/line"});
+  EXPECT_EQ(beside_block(line(0.4, 0.4, 0.8, false)), Pointers{});  // goes on below the block
+  EXPECT_EQ(beside_block([](Wall& w) { w.block = box(0.5, 0.7, 0.7, 1); }), Pointers{"/walls/1/block"});
+  EXPECT_EQ(beside_block([](Wall& w) { w.block = box(0.4, 0.6, 0.8, 1); }), Pointers{"/walls/1/block"});
+  EXPECT_EQ(beside_block([](Wall& w) { w.block = box(0.5, 0.7, 0.9, 1); }), Pointers{});
+}
+
 Pointers with_reservoir(const Segment& line, const std::function<void(Scene&)>& more = {}) {
   return after([&](Scene& s) {
     s.walls.resize(1);
