@@ -19,12 +19,12 @@ void check_unique(const Items& items, const char* list, Faults& faults) {
           {at_index(list, k, "/name"), "the name \"" + items[k].name + "\" is used twice: choose another"});
 }
 
-void check_soil(const std::string& name, const Soil& soil, Faults& faults) {
+void check_soil(const std::string& name, const Soil& soil, InitialStress stress, Faults& faults) {
   const SoilModel& model = soil.model;
-  if (soil.max_porosity && *soil.max_porosity <= soil.porosity)
-    faults.push_back(
-        {at_soil(name, "/max_porosity"), text(*soil.max_porosity) + " is not above the porosity " +
-                                             text(soil.porosity) + ": the grains would never touch"});
+  if (soil.max_porosity && *soil.max_porosity <= soil.porosity && stress != InitialStress::zero)
+    faults.push_back({at_soil(name, "/max_porosity"),
+                      text(*soil.max_porosity) + " is not above the porosity " + text(soil.porosity) +
+                          ": grains that do not touch at the start need initial.stress zero"});
   for (const auto& [key, detail] : check_model(model))
     faults.push_back({at_soil(name, "/model/" + key), detail});
 }
@@ -97,7 +97,7 @@ void check_names(const Scene& scene, Faults& faults) {
 }
 
 void check_materials(const Scene& scene, Faults& faults) {
-  for (const auto& [name, soil] : scene.soils) check_soil(name, soil, faults);
+  for (const auto& [name, soil] : scene.soils) check_soil(name, soil, scene.initial.stress, faults);
   check_soil_uses(scene, faults);
   if (scene.gravity == Vec3{0, 0, 0} && scene.initial.water_table)
     faults.push_back({"/initial/water_table", "has no effect without gravity: remove it"});
