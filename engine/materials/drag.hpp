@@ -1,28 +1,44 @@
 #pragma once
+#include <cmath>
+
 #include "engine/scene/scene.hpp"
 
 namespace quicksand {
 
 /// Resistance of the grains to the water that passes them, per bulk volume and relative velocity.
 struct Drag {
-  double at_reference = 0;  ///< N·s/m⁴, n0² ρw g / k
-  double porosity = 0.4;    ///< –, n0
-  bool follows_porosity = true;
+  PermeabilityLaw law = PermeabilityLaw::kozeny_carman;
+  double reference = 0;              ///< N·s/m⁴, ρw g/k at the initial porosity
+  double porosity = 0.4;             ///< –, n0
+  double exponent = 0;               ///< –, power
+  double viscous = 0, inertial = 0;  ///< Pa·s/m² and kg/m⁴, 150 μ/d² and 1.75 ρw/d of Ergun
 
   /// Conductivity is meant under standard gravity, 9.81 m/s²; without permeability (dry soil) R = 0.
   static Drag from(const Soil& soil, const Water& water);
 
-  /// R(n). Darcy: n² ρw g / k [FMS19]. Kozeny–Carman: k = k0 [n³/(1−n)²]/[n0³/(1−n0)²].
-  double resistance(double n) const {
-    if (!follows_porosity) return at_reference * n * n / (porosity * porosity);
-    const double grains = (1 - n) / (1 - porosity);
-    return at_reference * grains * grains * porosity / n;
-  }
-
   /// Pressure gradient per discharge, R/n² = ρw g/k (N·s/m⁴). This is what adds up along a flow path, so
   /// faces average it and multiply by their own n²: a layer's edges, half soil and half water, then resist as
-  /// half.
-  double resistivity(double n) const { return resistance(n) / (n * n); }
+  /// half. `discharge` is n |vw − vs| in m/s; only Ergun's law asks for it.
+  double resistivity(double n, double discharge = 0) const {
+    switch (law) {
+      case PermeabilityLaw::constant:
+        return reference;
+      case PermeabilityLaw::kozeny_carman: {  // k = k0 [n³/(1−n)²]/[n0³/(1−n0)²]
+        const double grains = (1 - n) / (1 - porosity), pores = porosity / n;
+        return reference * grains * grains * pores * pores * pores;
+      }
+      case PermeabilityLaw::power:  // k = k0 [(1+e)/(1+e0)]^exponent with 1+e = 1/(1−n)
+        return reference * std::pow((1 - n) / (1 - porosity), exponent);
+      case PermeabilityLaw::ergun:  // S. Ergun 1952: ∇p = 150 μ(1−n)²/(n³d²) U + 1.75 ρw(1−n)/(n³d) U²
+        return (viscous * (1 - n) + inertial * discharge) * (1 - n) / (n * n * n);
+    }
+    return 0;
+  }
+
+  /// R(n) of [FMS19], N·s/m⁴: the force on the grains per bulk volume and relative velocity.
+  double resistance(double n, double discharge = 0) const { return n * n * resistivity(n, discharge); }
+
+  bool follows_speed() const { return inertial > 0; }
 };
 
 }  // namespace quicksand

@@ -48,7 +48,8 @@ struct SoilPoints : PointSet<D> {
   std::vector<Stress<D>> stress;         ///< Pa, effective, tension positive
   std::vector<double> plastic_strain;    ///< –, accumulated deviatoric
   std::vector<double> preconsolidation;  ///< Pa; empty unless a law of the scene keeps it
-  std::vector<std::int32_t> soil;        ///< index of the material
+  std::vector<double> discharge;   ///< m/s, n |vw − vs| as the drag sees it; empty unless a law follows it
+  std::vector<std::int32_t> soil;  ///< index of the material
 };
 
 /// Calls f(array) for every array of a set.

@@ -103,6 +103,14 @@ void set_levels(const Scene& scene, const Stage& stage, State<D>& s) {
   }
 }
 
+/// Room for the speeds that the drag of some soil of the set asks for.
+template <int D>
+void keep_discharge(const State<D>& s, SoilPoints<D>& set) {
+  if (std::any_of(set.soil.begin(), set.soil.end(),
+                  [&](int k) { return s.constants.soils[k].drag.follows_speed(); }))
+    set.discharge.assign(set.size(), 0);
+}
+
 }  // namespace
 
 template <int D>
@@ -115,6 +123,7 @@ State<D> make_state(const Scene& scene) {
   s.soil = std::move(points.soil);
   s.fixed = std::move(points.fixed);
   s.water = std::move(points.water);
+  keep_discharge(s, s.soil), keep_discharge(s, s.fixed);
   for (int d = 0; d < D; ++d) {
     s.sums[d].assign(s.grid.count(), {});
     s.image[d].assign(s.grid.count(), {});

@@ -31,12 +31,6 @@ void check_supported(const Scene& scene, Faults& faults) {
   const auto refuse = [&](bool used, const std::string& pointer, const std::string& what) {
     if (used) faults.push_back({pointer, what + " is not supported yet"});
   };
-  for (const auto& [name, soil] : scene.soils) {
-    refuse(soil.permeability.law == PermeabilityLaw::ergun, at_soil(name, "/permeability/law"),
-           "permeability law ergun");
-    refuse(soil.permeability.law == PermeabilityLaw::power, at_soil(name, "/permeability/law"),
-           "permeability law power");
-  }
   for (std::size_t k = 0; k < scene.loads.size(); ++k)
     refuse(scene.loads[k].kind == Load::Kind::plate, at_index("loads", k, "/kind"), "a plate load");
   for (std::size_t k = 0; k < scene.stages.size(); ++k) {

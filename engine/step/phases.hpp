@@ -9,6 +9,9 @@ namespace quicksand {
 template <int D>
 struct StepReport;
 
+/// Last velocities → `discharge` of the points that keep it, and what depends on it.
+template <int D>
+void follow_discharge(State<D>& s);
 /// Points → `sums`, `cell_sums`.
 template <int D>
 void points_to_faces(State<D>& s);
@@ -22,7 +25,8 @@ void follow_leaders(State<D>& s);
 /// The face that a face moves with in the end; itself if it moves on its own.
 template <int D>
 int leader_of(const State<D>& s, int d, int face);
-/// Once per run: what fixed grains occupy → `fixed_face`, `fixed_cell`.
+/// What fixed grains occupy and resist → `fixed_face`, `fixed_cell`. Once per run, unless their drag follows
+/// the water's speed.
 template <int D>
 void measure_fixed(State<D>& s);
 /// Water surface, room and volume drift → `cell`.

@@ -68,8 +68,9 @@ template <int D>
 StepReport<D> advance(State<D>& s, double dt) {
   StepReport<D> report;
   Stopwatch clock(s.phase_seconds);
-  set_ports(s);        // levels of reservoirs, seepage faces
-  points_to_faces(s);  // masses, momenta, forces on the faces
+  set_ports(s);         // levels of reservoirs, seepage faces
+  follow_discharge(s);  // speeds that the drag asks for
+  points_to_faces(s);   // masses, momenta, forces on the faces
   clock.lap(Phase::to_grid);
   find_surface(s);  // which cells have pressure, where it is zero
   clock.lap(Phase::surface);

@@ -15,6 +15,12 @@ Vec<D> stress_row(const Stress<D>& s, int d) {
     return d == 0 ? Vec<3>{s[0], s[3], s[5]} : d == 1 ? Vec<3>{s[3], s[1], s[4]} : Vec<3>{s[5], s[4], s[2]};
 }
 
+/// m/s, for drag that follows it.
+template <int D>
+double discharge_of(const SoilPoints<D>& soil, std::size_t p) {
+  return soil.discharge.empty() ? 0 : soil.discharge[p];
+}
+
 /// Velocity of component d that a point gives to a face: its own, and with the affine transfer what its
 /// gradient adds on the way there. [JSSTS15] eq. (8), per component of the staggered grid.
 template <class S, int D>
@@ -32,7 +38,7 @@ void soil_to_faces(State<D>& s, std::uint32_t p) {
   const PointKernel<D, typename S::Shape> kernel(s.grid, soil.x[p]);
   const double mass = soil.mass[p], n = soil.porosity[p];
   const double grains = mass / material.grain_density, bulk = grains / (1 - n);
-  const double resistivity = s.water.size() ? bulk * material.drag.resistivity(n) : 0;
+  const double resistivity = s.water.size() ? bulk * material.drag.resistivity(n, discharge_of(soil, p)) : 0;
   // The hoop stress pulls towards the axis: the weak form's σθθ v_r/r.
   const double hoop = S::axial ? soil.stress[p][2] / soil.x[p][0] : 0;
   for (int d = 0; d < D; ++d) {
@@ -135,7 +141,8 @@ void measure_fixed_with(State<D>& s) {
     const SoilMaterial& material = s.constants.soils[s.fixed.soil[p]];
     const PointKernel<D, Shape> kernel(s.grid, s.fixed.x[p]);
     const double n = s.fixed.porosity[p], grains = s.fixed.mass[p] / material.grain_density;
-    const double bulk = grains / (1 - n), resistivity = material.drag.resistivity(n);
+    const double bulk = grains / (1 - n),
+                 resistivity = material.drag.resistivity(n, discharge_of(s.fixed, p));
     for (int d = 0; d < D; ++d)
       for_faces(s.grid, s.soil_walls, kernel, d, [&](int face, double w, double, const Vec<D>&) {
         const double volume = s.volume.face(d, face);

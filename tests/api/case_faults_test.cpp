@@ -149,12 +149,6 @@ const Mutation of_sense[] = {
 };
 
 const Mutation not_supported_yet[] = {
-    {"Ergun",
-     ADD("/materials/soils/sand/permeability", R"({"law":"ergun","grain_size":5e-4})"),
-     {"/materials/soils/sand/permeability/law"}},
-    {"PowerLaw",
-     ADD("/materials/soils/sand/permeability/law", R"("power")"),
-     {"/materials/soils/sand/permeability/law"}},
     {"Damping", ADD("/stages/0/damping", "0.2"), {"/stages/0/damping"}},
     {"SidewaysGravityWithK0", ADD("/gravity", "[1, -9.81]"), {"/initial/stress"}},
     {"RemoveBodies", ADD("/stages/1/remove_bodies", R"(["pond"])"), {"/stages/1/remove_bodies"}},

@@ -30,6 +30,32 @@ TEST(Drag, KozenyCarmanFollowsThePorosity) {
   EXPECT_LT(drag.resistance(0.9), drag.resistance(0.4));  // loosened soil lets water through
 }
 
+TEST(Drag, PowerOfTheVolume) {
+  Soil soil = test::sand();
+  soil.permeability.law = PermeabilityLaw::power;
+  soil.permeability.exponent = 3;
+  const Drag drag = Drag::from(soil, {});
+  for (const double n : {0.2, 0.4, 0.6}) {
+    const double k = 1e-4 * std::pow(0.6 / (1 - n), 3);  // (1+e)/(1+e0) = (1−n0)/(1−n)
+    EXPECT_NEAR(drag.resistance(n) * k / (n * n * 1000 * kGravity), 1, 1e-12) << n;
+  }
+}
+
+TEST(Drag, ErgunsPressureDrop) {
+  Soil soil = test::sand();
+  soil.permeability = {.law = PermeabilityLaw::ergun, .grain_size = 5e-4};
+  const Drag drag = Drag::from(soil, {});
+  EXPECT_TRUE(drag.follows_speed());
+  // Minimum fluidization of references.json: the drop carries the submerged grains at 2.801 mm/s.
+  const double n = 0.4, q = 2.801e-3, drop = drag.resistivity(n, q) * q;
+  EXPECT_NEAR(drop / ((1 - n) * (2650 - 1000) * kGravity), 1, 1e-3);
+  // On the grains, per volume and relative velocity w = q/n: the drop's share R w = n ∇p.
+  EXPECT_NEAR(drag.resistance(n, q) * q / n, n * drop, 1e-9 * drop);
+  const double viscous = 150 * 1e-3 * 0.36 / (0.064 * 25e-8), inertial = 1.75 * 1000 * 0.6 / (0.064 * 5e-4);
+  EXPECT_NEAR(drag.resistivity(n), viscous, 1e-9 * viscous);
+  EXPECT_NEAR(drag.resistivity(n, 1) - viscous, inertial, 1e-9 * inertial);
+}
+
 TEST(Drag, FollowsTheDensityOfTheWater) {
   Water oil;
   oil.density = 800;
