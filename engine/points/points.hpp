@@ -60,7 +60,8 @@ void for_arrays(WaterPoints<D>& set, F&& f) {
 template <int D, class F>
 void for_arrays(SoilPoints<D>& set, F&& f) {
   f(set.x), f(set.v), f(set.start), f(set.mass), f(set.body), f(set.affine);
-  f(set.porosity), f(set.stress), f(set.plastic_strain), f(set.preconsolidation), f(set.soil);
+  f(set.porosity), f(set.stress), f(set.plastic_strain), f(set.preconsolidation), f(set.discharge),
+      f(set.soil);
 }
 
 /// Removes point p; the last point takes its place. Arrays that no law of the scene keeps are empty.
