@@ -36,7 +36,7 @@ template <class Shape, int D>
 void follow(const State<D>& s, SoilPoints<D>& soil, bool fixed) {
   tbb::parallel_for(std::size_t{0}, soil.discharge.size(), [&](std::size_t p) {
     if (!s.constants.soils[soil.soil[p]].drag.follows_speed()) return;
-    const double now = soil.porosity[p] * relative_speed<Shape>(s, soil.x[p], fixed);
+    const double now = soil.porosity[p] * relative_speed<Shape, D>(s, soil.x[p], fixed);
     soil.discharge[p] = 0.5 * (soil.discharge[p] + now);
   });
 }
