@@ -97,7 +97,8 @@ void Place::read(Region& out) const {
         region.vertices.push_back({vertex[0].get<double>(), vertex[1].get<double>()});
   } else if (const Place disc = here["disc"]; disc.given()) {
     region.kind = Region::Kind::disc;
-    disc["center"].read(region.center);
+    if (const Place center = disc["center"]; !center.broken() && center.given())
+      for (std::size_t axis = 0; axis < 2; ++axis) region.center[axis] = (*center.value_)[axis].get<double>();
     disc["radius"].read(region.radius);
   } else if (const Place all = here["union"]; all.given()) {
     region.kind = Region::Kind::union_of;

@@ -50,7 +50,7 @@ Json Writer::region(const Region& r) const {
     case Region::Kind::polygon:
       return {{"polygon", r.vertices}};
     case Region::Kind::disc:
-      return {{"disc", {{"center", vector(r.center)}, {"radius", r.radius}}}};
+      return {{"disc", {{"center", {r.center[0], r.center[1]}}, {"radius", r.radius}}}};
     case Region::Kind::union_of:
       return {{"union", list(r.parts, nested)}};
     case Region::Kind::difference:

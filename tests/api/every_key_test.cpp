@@ -153,7 +153,7 @@ std::vector<json> documents() {
       "model": {"law": "linear_elastic", "young_modulus": 1e6, "poisson_ratio": 0.2}}},
       "water": {"bulk_modulus": "incompressible"}},
     "bodies": [{"name": "clay", "kind": "saturated_soil", "soil": "clay", "velocity": [0, 0, 1],
-      "region": {"box": {"min": [0, 0, -1], "max": [2, 1, 1]}}}],
+      "region": {"difference": [{"box": {"min": [0, 0, -1], "max": [2, 1, 1]}}, {"disc": {"center": [1, 1], "radius": 0.25}}]}}],
     "walls": [{"name": "pile", "line": {"from": [1, 1, -1], "to": [1, 2, 1]}}],
     "reservoirs": [{"name": "lake", "line": {"from": [2, 1, -1], "to": [2, 2, 1]}, "head": 1.5}],
     "initial": {"pressure": "uniform", "uniform_pressure": 12, "stress": "uniform", "uniform_stress": [-1, -2, -3, 0, 1, 2]},
