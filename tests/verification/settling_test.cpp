@@ -33,8 +33,9 @@ Height height_of(const Frame& frame) {
 
 void settling_page(double factor, const std::string& size) {
   Page page("settling", size);
-  const Recorded r =
-      page.run(load_case("settling", factor), {.water_volume_drift = 0.005, .interventions = true});
+  Scene scene = load_case("settling", factor);
+  scene.domain.max[0] = scene.bodies[0].region.max[0] = 2 * scene.cell_size();
+  const Recorded r = page.run(scene, {.water_volume_drift = 0.005, .interventions = true});
   const double expected = kStokes * std::pow(kPorosity, 4.65);
   Curve edge{"Upper edge of the grains",         "t (s)", "height (m)", size, {}, {},
              {kHeight, kHeight - expected * 35}, {0, 35}};
