@@ -81,7 +81,8 @@ TEST(Stencil, WeightsSumToOneWithTheirMeanAtThePoint) {
   expect_moments<3, LinearHat>();
 }
 
-/// What carries water has the divergence of the cells around: within a cell of hats everywhere the cell's own.
+/// What carries water has the divergence of the cells around: within a cell of hats everywhere the cell's
+/// own.
 TEST(Stencil, MoversKeepTheCellsDivergence) {
   const Grid<2> grid = some_grid<2>();
   const Walls<2> open(grid);
