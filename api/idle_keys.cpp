@@ -66,7 +66,7 @@ void check_body(const Place& place, const Body& body) {
   if (place["kind"].refused()) return;
   if (body.kind == BodyKind::water) return idle(place, {"soil", "fixed"}, with("kind", body.kind));
   needed(place, {"soil"}, with("kind", body.kind));
-  if (body.fixed) idle(place, {"velocity"}, "on a fixed body");
+  if (body.fixed) idle(place, {"velocity", "rotation_rate"}, "on a fixed body");
 }
 
 void check_initial(const Place& place, const Initial& initial, bool water, bool soil) {

@@ -58,6 +58,7 @@ void read(const Place& place, Body& body) {
   place["region"].read(body.region);
   place["fixed"].read(body.fixed);
   place["velocity"].read(body.velocity);
+  place["rotation_rate"].read(body.rotation_rate);
 }
 
 void read(const Place& place, Wall& wall) {

@@ -125,7 +125,10 @@ Json Writer::body(const Body& b) const {
   if (b.kind != BodyKind::water) json["soil"] = b.soil;
   json["region"] = region(b.region);
   if (b.kind != BodyKind::water) json["fixed"] = b.fixed;
-  if (!b.fixed) json["velocity"] = vector(b.velocity);
+  if (!b.fixed) {
+    json["velocity"] = vector(b.velocity);
+    if (scene.domain.dimension != Dimension::axisymmetric) json["rotation_rate"] = b.rotation_rate;
+  }
   return json;
 }
 

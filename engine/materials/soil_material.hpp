@@ -63,8 +63,9 @@ bool needs_initial_stress(const SoilModel& model);
 template <int D>
 int update_state(const SoilMaterial& soil, SoilState<D>& state, double n, const Gradient<D>& l, double dt,
                  double hoop = 0) {
-  state.stress = rotated<D>(state.stress, l, dt);
-  const Strain<D> strain = strain_increment<D>(l, dt, hoop);
+  const Gradient<D> middle = midpoint_gradient<D>(l, dt);
+  state.stress = rotated<D>(state.stress, middle, dt);
+  const Strain<D> strain = strain_increment<D>(middle, dt, hoop);
   return std::visit([&](const auto& law) { return law.template update<D>(state, strain, n); }, soil.law);
 }
 

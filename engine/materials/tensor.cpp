@@ -64,12 +64,25 @@ Strain<D> strain_increment(const Gradient<D>& l, double dt, [[maybe_unused]] dou
 }
 
 template <int D>
+Gradient<D> midpoint_gradient(const Gradient<D>& l, double dt) {
+  Eigen::Matrix<double, D, D> m;
+  for (int i = 0; i < D; ++i)
+    for (int j = 0; j < D; ++j) m(i, j) = l[i][j];
+  const Eigen::Matrix<double, D, D> half = Eigen::Matrix<double, D, D>::Identity() + 0.5 * dt * m;
+  m *= half.inverse();
+  Gradient<D> middle;
+  for (int i = 0; i < D; ++i)
+    for (int j = 0; j < D; ++j) middle[i][j] = m(i, j);
+  return middle;
+}
+
+template <int D>
 Stress<D> rotated(const Stress<D>& stress, const Gradient<D>& l, double dt) {
   Matrix spin = Matrix::Zero();
   for (int i = 0; i < D; ++i)
     for (int j = 0; j < D; ++j) spin(i, j) = 0.5 * (l[i][j] - l[j][i]) * dt;
-  const Matrix s = to_matrix<D>(stress);
-  return to_stress<D>(s + spin * s - s * spin);
+  const Matrix one = Matrix::Identity(), rotation = (one - 0.5 * spin).inverse() * (one + 0.5 * spin);
+  return to_stress<D>(rotation * to_matrix<D>(stress) * rotation.transpose());
 }
 
 template <int D>
@@ -94,6 +107,8 @@ Stress<D> with_values(const Principal& p, const std::array<double, 3>& value) {
   return to_stress<D>(m);
 }
 
+template Gradient<2> midpoint_gradient<2>(const Gradient<2>&, double);
+template Gradient<3> midpoint_gradient<3>(const Gradient<3>&, double);
 template Strain<2> strain_increment<2>(const Gradient<2>&, double, double);
 template Strain<3> strain_increment<3>(const Gradient<3>&, double, double);
 template Stress<2> rotated<2>(const Stress<2>&, const Gradient<2>&, double);

@@ -33,11 +33,17 @@ double contracted(const std::array<double, N>& t) {
   return sum;
 }
 
+/// The velocity gradient with respect to the middle of a step's motion, L (1 + ½ Δt L)⁻¹: its symmetric part
+/// is zero in a rigid rotation of any size. T. J. R. Hughes, J. Winget, IJNME 15 (1980) 1862.
+template <int D>
+Gradient<D> midpoint_gradient(const Gradient<D>& l, double dt);
+
 /// Strain of a step of dt seconds; in the plane the third strain grows at the rate `hoop`, 1/s.
 template <int D>
 Strain<D> strain_increment(const Gradient<D>& l, double dt, double hoop);
 
-/// Stress carried along with the material's spin over dt seconds (Jaumann rate).
+/// Stress carried along with the material's spin over dt seconds (Jaumann rate), by the rotation
+/// (1 − ½W)⁻¹(1 + ½W), which keeps its invariants.
 template <int D>
 Stress<D> rotated(const Stress<D>& stress, const Gradient<D>& l, double dt);
 

@@ -142,8 +142,12 @@ Plan make_plan(const Scene& scene) {
   plan.stages = plan_stages(scene);
 
   double speed = 0;
-  for (const Body& body : scene.bodies)
-    speed = std::max(speed, std::hypot(body.velocity[0], body.velocity[1], body.velocity[2]));
+  for (const Body& body : scene.bodies) {
+    const Bounds box = bounding_box(body.region);
+    const double radius = 0.5 * std::hypot(box.max[0] - box.min[0], box.max[1] - box.min[1]);
+    speed = std::max(speed, std::hypot(body.velocity[0], body.velocity[1], body.velocity[2]) +
+                                std::abs(body.rotation_rate) * radius);
+  }
   for (std::size_t k = 0; k < scene.stages.size(); ++k) {
     const StepSituation start = situation(scene, plan, speed, slow_process(scene, k).inertia);
     const StepBound bound = choose_step(scene, start);

@@ -84,6 +84,16 @@ class Rows {
   std::vector<std::vector<std::pair<std::size_t, Stretches>>> cuts_;  ///< per row of places: body, where
 };
 
+template <int D>
+Vec<D> initial_velocity(const Body& body, const Vec<D>& x) {
+  Vec<D> v = first<D>(body.velocity);
+  if (body.rotation_rate == 0) return v;
+  const Bounds box = bounding_box(body.region);
+  v[0] -= body.rotation_rate * (x[1] - 0.5 * (box.min[1] + box.max[1]));
+  v[1] += body.rotation_rate * (x[0] - 0.5 * (box.min[0] + box.max[0]));
+  return v;
+}
+
 /// f(x, index of the body) for every seeding place that a body covers.
 template <int D, class F>
 void covered_places(const Scene& scene, const Grid<D>& grid, F&& f) {
@@ -115,7 +125,7 @@ SeededPoints<D> seed(const Scene& scene, const Grid<D>& grid) {
   for (int d = 0; d < D; ++d) part /= scene.numerics.points_per_cell;
   covered_places<D>(scene, grid, [&](const Vec<D>& x, std::size_t b) {
     const Body& body = scene.bodies[b];
-    const Vec<D> v = first<D>(body.velocity);
+    const Vec<D> v = initial_velocity<D>(body, x);
     const double share = part * grid.radius(x);
     double n = 1;
     if (body.kind != BodyKind::water) {

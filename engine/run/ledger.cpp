@@ -32,7 +32,10 @@ LedgerKeeper<D>::LedgerKeeper(const Scene&, const State<D>& s) {
   ledger_.solid_mass = ledger_.solid_mass_initial = total(s.soil.mass) + total(s.fixed.mass);
   ledger_.water_volume = ledger_.water_volume_initial = water_volume(s);
   start_momentum_ = s.momentum;
-  for (double p : s.momentum) driving_impulse_ += std::abs(p);
+  each_set(s, [&](const auto& set) {  // of the points, as that of bodies that move apart sums to nothing
+    for (std::size_t p = 0; p < set.size(); ++p)
+      for (int d = 0; d < D; ++d) driving_impulse_ += set.mass[p] * std::abs(set.v[p][d]);
+  });
 }
 
 template <int D>

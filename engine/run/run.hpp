@@ -81,7 +81,7 @@ struct Ledger {
   std::array<double, 3> impulse_surface{};  ///< N·s, to drops that the water surface carries along
   std::array<double, 3> impulse_flow{};     ///< N·s, momentum of what came in less what left
   std::array<double, 3> impulse_stages{};   ///< N·s, given where a stage begins: inertia scaled back
-  double momentum_residual = 0;  ///< |change − Σ impulses| / (∫ |weight, loads| dt + |at the start|)
+  double momentum_residual = 0;  ///< |change − Σ impulses| / (∫ |weight, loads| dt + Σ |m v| at the start)
   double energy_kinetic = 0, energy_potential = 0, energy_strain = 0;  ///< J
   long clipped_points = 0;  ///< positions put back in front of a wall
   long clamped_values = 0;

@@ -111,6 +111,17 @@ void keep_discharge(const State<D>& s, SoilPoints<D>& set) {
     set.discharge.assign(set.size(), 0);
 }
 
+/// For the affine transfer, the gradient of the points' initial velocity.
+template <class Set>
+void carry_gradient(const Scene& scene, Set& set) {
+  set.carries_gradient = true;
+  set.affine.assign(set.size(), {});
+  for (std::size_t p = 0; p < set.size(); ++p) {
+    const double rate = scene.bodies[set.body[p]].rotation_rate;
+    set.affine[p][0][1] = -rate, set.affine[p][1][0] = rate;
+  }
+}
+
 }  // namespace
 
 template <int D>
@@ -137,9 +148,8 @@ State<D> make_state(const Scene& scene) {
   for (const Load& load : scene.loads)
     if (load.kind == Load::Kind::traction) s.loads.push_back(make_load<D>(scene, load, s));
   if (s.constants.transfer == Transfer::apic) {
-    s.soil.affine.assign(s.soil.size(), {});
-    s.water.affine.assign(s.water.size(), {});
-    s.soil.carries_gradient = s.water.carries_gradient = true;
+    carry_gradient(scene, s.soil);
+    carry_gradient(scene, s.water);
   }
   enter_stage(scene, scene.stages.front(), s);
   if (s.fixed.size()) measure_fixed(s);

@@ -105,6 +105,10 @@ void check_materials(const Scene& scene, Faults& faults) {
   const bool moving_soil = std::any_of(scene.bodies.begin(), scene.bodies.end(), [](const Body& body) {
     return body.kind != BodyKind::water && !body.fixed;
   });
+  for (std::size_t k = 0; k < scene.bodies.size(); ++k)
+    if (scene.bodies[k].rotation_rate != 0 && scene.domain.dimension == Dimension::axisymmetric)
+      faults.push_back({at_index("bodies", k, "/rotation_rate"),
+                        "a body that turns in the plane is not symmetric about the axis: remove it"});
   if (scene.numerics.pressure == PressureScheme::explicit_scheme && !scene.water.bulk_modulus)
     faults.push_back(
         {"/numerics/pressure",

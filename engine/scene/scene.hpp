@@ -89,8 +89,9 @@ struct Body {
   BodyKind kind = BodyKind::water;
   std::string soil;  ///< key into Scene::soils; not for water
   Region region;
-  bool fixed = false;  ///< grains are held in place and cannot be entered by other grains
-  Vec3 velocity{};     ///< m/s, initial
+  bool fixed = false;        ///< grains are held in place and cannot be entered by other grains
+  Vec3 velocity{};           ///< m/s, initial
+  double rotation_rate = 0;  ///< rad/s, initial, from x to y about the middle of the region's bounding box
 };
 
 struct Segment {

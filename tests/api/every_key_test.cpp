@@ -152,7 +152,7 @@ std::vector<json> documents() {
     "materials": {"soils": {"clay": {"permeability": {"law": "constant", "value": 1e-9},
       "model": {"law": "linear_elastic", "young_modulus": 1e6, "poisson_ratio": 0.2}}},
       "water": {"bulk_modulus": "incompressible"}},
-    "bodies": [{"name": "clay", "kind": "saturated_soil", "soil": "clay", "velocity": [0, 0, 1],
+    "bodies": [{"name": "clay", "kind": "saturated_soil", "soil": "clay", "velocity": [0, 0, 1], "rotation_rate": 0.5,
       "region": {"difference": [{"box": {"min": [0, 0, -1], "max": [2, 1, 1]}}, {"disc": {"center": [1, 1], "radius": 0.25}}]}}],
     "walls": [{"name": "pile", "line": {"from": [1, 1, -1], "to": [1, 2, 1]}}],
     "reservoirs": [{"name": "lake", "line": {"from": [2, 1, -1], "to": [2, 2, 1]}, "head": 1.5}],
