@@ -65,14 +65,11 @@ Strain<D> strain_increment(const Gradient<D>& l, double dt, [[maybe_unused]] dou
 
 template <int D>
 Gradient<D> midpoint_gradient(const Gradient<D>& l, double dt) {
-  Eigen::Matrix<double, D, D> m;
+  const auto spin = [&](int i, int j) { return 0.5 * (l[i][j] - l[j][i]); };
+  Gradient<D> middle = l;
   for (int i = 0; i < D; ++i)
-    for (int j = 0; j < D; ++j) m(i, j) = l[i][j];
-  const Eigen::Matrix<double, D, D> half = Eigen::Matrix<double, D, D>::Identity() + 0.5 * dt * m;
-  m *= half.inverse();
-  Gradient<D> middle;
-  for (int i = 0; i < D; ++i)
-    for (int j = 0; j < D; ++j) middle[i][j] = m(i, j);
+    for (int j = 0; j < D; ++j)
+      for (int k = 0; k < D; ++k) middle[i][j] -= 0.5 * dt * spin(i, k) * spin(k, j);
   return middle;
 }
 

@@ -33,8 +33,9 @@ double contracted(const std::array<double, N>& t) {
   return sum;
 }
 
-/// The velocity gradient with respect to the middle of a step's motion, L (1 + ½ Δt L)⁻¹: its symmetric part
-/// is zero in a rigid rotation of any size. T. J. R. Hughes, J. Winget, IJNME 15 (1980) 1862.
+/// The velocity gradient without the stretch that a finite rotation leaves in it, L − ½ Δt W²: what T. J. R.
+/// Hughes and J. Winget, IJNME 15 (1980) 1862, get from the middle of the motion, but for second order in the
+/// strain.
 template <int D>
 Gradient<D> midpoint_gradient(const Gradient<D>& l, double dt);
 
