@@ -51,7 +51,6 @@ struct Grid {
   double face_radius(int d, int face) const {
     return axial ? origin[0] + (face % size[0] - pad + (d == 0 ? 0.0 : 0.5)) * h : 1;
   }
-  bool on_axis(int d, int face) const { return axial && d == 0 && face_radius(d, face) < 0.25 * h; }
   double cell_radius(int cell) const { return face_radius(kUp, cell); }
   double radius(const Vec<D>& x) const { return axial ? x[0] : 1; }
 

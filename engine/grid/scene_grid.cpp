@@ -43,9 +43,10 @@ void close_domain(const Scene& scene, const Grid<D>& grid, Walls<D>& walls) {
     else
       walls.close(d, face, kind == SideKind::no_slip);
   };
+  const auto on_axis = [&](int d) { return grid.axial && d == 0 && grid.origin[0] == 0; };
   for_each_cell(grid, [&](int i, const Cell<D>& c) {
     for (int d = 0; d < D; ++d) {
-      if (c[d] == 0) close(d, i, scene.domain.sides[2 * d].kind);
+      if (c[d] == 0) close(d, i, on_axis(d) ? SideKind::symmetry : scene.domain.sides[2 * d].kind);
       if (c[d] == grid.cells[d] - 1) close(d, i + grid.stride[d], scene.domain.sides[2 * d + 1].kind);
     }
   });

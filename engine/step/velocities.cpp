@@ -66,10 +66,10 @@ void solve_soil(const Balance& b, double dt, FaceFlow& f) {
 }
 
 /// +1 or −1: the direction in which grains may leave a closed face; 0: neither (walls of no thickness,
-/// which may have grains on both sides; an axis).
+/// which may have grains on both sides; planes of symmetry).
 template <int D>
 int leaving_direction(const State<D>& s, int d, int face) {
-  if (s.grid.on_axis(d, face) || s.soil_walls.symmetry(d, face)) return 0;
+  if (s.soil_walls.symmetry(d, face)) return 0;
   const bool low = s.soil_walls.blocked(face - s.grid.stride[d]), high = s.soil_walls.blocked(face);
   return low == high ? 0 : low ? 1 : -1;
 }

@@ -189,6 +189,31 @@ TEST(Axisymmetric, ClosedTankWithAStepStaysAtRest) {
   expect_rest(s, 0.3, 1e-3);
 }
 
+/// Struck at once and without any damping, a cylinder rings on: the chosen step is stable beside the axis
+/// too.
+TEST(Axisymmetric, StruckCylinderRingsOnWithItsEnergy) {
+  Scene s = scene(Dimension::axisymmetric, {1.2, 0.1, 0}, 0.05, 3);
+  s.gravity = {};
+  s.soils = {{"soil", sand(0.4, 1e-3, 1e7)}};
+  s.bodies = {body("cylinder", BodyKind::soil, {0, 0, 0}, {1, 0.1, 0}, "soil")};
+  Load load;
+  load.name = "pressure", load.body = "cylinder", load.side = BodySide::right;
+  load.traction = {-1e3, 0, 0};
+  s.loads = {load};
+  s.initial.stress = InitialStress::zero;
+  s.numerics.pic_rate = 0;
+  s.numerics.time_step_factor = 1;
+  const Recorded r = record(s);
+  ASSERT_EQ(r.report.status, RunStatus::succeeded) << r.report.failure.message;
+  const auto kinetic = r.results.series("ledger.energy_kinetic");
+  const auto half = kinetic.begin() + static_cast<std::ptrdiff_t>(kinetic.size() / 2);
+  const double early = *std::max_element(kinetic.begin(), half),
+               late = *std::max_element(half, kinetic.end());
+  std::printf("kinetic energy %.3g J per radian, later %.3g J; %ld steps\n", early, late, r.report.steps);
+  EXPECT_GT(late, 0);
+  EXPECT_LT(late, 1.1 * early);
+}
+
 /// A full cylinder under even pressure bears it everywhere, σrr = σθθ = −p, and shrinks by u = −p r
 /// (1+ν)(1−2ν)/E.
 TEST(Axisymmetric, PressedCylinderIsUniform) {
