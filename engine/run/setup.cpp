@@ -61,6 +61,21 @@ SurfaceLoad<D> make_load(const Scene& scene, const Load& load, const State<D>& s
 }
 
 template <int D>
+Plate<D> make_plate(const Load& load) {
+  Plate<D> plate;
+  for (int d = 0; d < D; ++d) {
+    plate.low[d] = std::min(load.plate.from[d], load.plate.to[d]);
+    plate.high[d] = std::max(load.plate.from[d], load.plate.to[d]);
+    plate.velocity[d] = load.plate_velocity[d];
+  }
+  plate.rough = load.rough;
+  plate.driven = !load.plate_force;
+  if (load.plate_force) plate.force = (*load.plate_force)[kPlateAxis];
+  plate.ramp = load.ramp;
+  return plate;
+}
+
+template <int D>
 void make_ports(const std::vector<PortFace>& faces, State<D>& s) {
   if (faces.empty()) return;
   for (auto& of_face : s.port_of) of_face.assign(s.grid.count(), -1);
@@ -146,7 +161,10 @@ State<D> make_state(const Scene& scene) {
   s.cell.assign(s.grid.count(), {});
   s.pressure.assign(s.grid.count(), 0);
   for (const Load& load : scene.loads)
-    if (load.kind == Load::Kind::traction) s.loads.push_back(make_load<D>(scene, load, s));
+    if (load.kind == Load::Kind::traction)
+      s.loads.push_back(make_load<D>(scene, load, s));
+    else
+      s.plates.push_back(make_plate<D>(load));
   if (s.constants.transfer == Transfer::apic) {
     carry_gradient(scene, s.soil);
     carry_gradient(scene, s.water);
@@ -155,6 +173,7 @@ State<D> make_state(const Scene& scene) {
   if (s.fixed.size()) measure_fixed(s);
   set_ports(s);
   points_to_faces(s);
+  mark_plates(s);  // knows where the soil is
   find_surface(s);
   set_initial_pressure(scene, s);
   set_initial_stress(scene, s);
@@ -175,14 +194,20 @@ void enter_stage(const Scene& scene, const Stage& stage, State<D>& s) {
   if (s.ports.empty()) make_ports(walls.ports, s);
   for (const Port<D>& port : s.ports) s.water_walls.set_port_open(port.d, port.face, port.open);
   set_levels(scene, stage, s);
-  for (std::size_t i = 0, k = 0; i < scene.loads.size(); ++i) {
-    if (scene.loads[i].kind != Load::Kind::traction) continue;
-    SurfaceLoad<D>& load = s.loads[k++];
-    const bool acts = !stage.loads || std::find(stage.loads->begin(), stage.loads->end(),
-                                                scene.loads[i].name) != stage.loads->end();
-    if (acts && !load.active) load.start = s.time;
-    load.active = acts;
+  std::size_t traction = 0, plate = 0;
+  for (const Load& load : scene.loads) {
+    const bool acts =
+        !stage.loads || std::find(stage.loads->begin(), stage.loads->end(), load.name) != stage.loads->end();
+    const auto set = [&](auto& state) {
+      if (acts && !state.active) state.start = s.time;
+      state.active = acts;
+    };
+    if (load.kind == Load::Kind::traction)
+      set(s.loads[traction++]);
+    else
+      set(s.plates[plate++]);
   }
+  mark_plates(s);
 }
 
 template State<2> make_state<2>(const Scene&);

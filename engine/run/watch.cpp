@@ -128,6 +128,11 @@ std::vector<SeriesInfo> Watch<D>::info() const {
     const Quantity q = quantity(probe.quantity);
     all.push_back({"probe." + probe.name, q.unit, q.components});
   }
+  for (const Load& load : scene_.loads) {
+    if (load.kind != Load::Kind::plate) continue;
+    all.push_back({"plate." + load.name + ".movement", "m", 1});
+    all.push_back({"plate." + load.name + ".force", "N", 1});
+  }
   for (const Section& section : scene_.output.sections) all.push_back({"section." + section.name, "m³/s", 1});
   for (const Reservoir& reservoir : scene_.reservoirs) {
     all.push_back({"reservoir." + reservoir.name + ".level", "m", 1});
@@ -174,6 +179,7 @@ template <int D>
 std::vector<double> Watch<D>::sample(const State<D>& s, const StepReport<D>& step, const Ledger& l) {
   std::vector<double> out;
   for (const Probe& probe : scene_.output.probes) append_probe(s, probe, out);
+  for (const Plate<D>& plate : s.plates) out.insert(out.end(), {plate.sunk, plate.reaction});
   for (const Section& section : scene_.output.sections) out.push_back(flow_through(s, section.line));
   for (const ReservoirState& r : s.reservoirs) out.insert(out.end(), {r.level(s.time), r.inflow});
   for (int b : moving_soil_) {

@@ -31,8 +31,6 @@ void check_supported(const Scene& scene, Faults& faults) {
   const auto refuse = [&](bool used, const std::string& pointer, const std::string& what) {
     if (used) faults.push_back({pointer, what + " is not supported yet"});
   };
-  for (std::size_t k = 0; k < scene.loads.size(); ++k)
-    refuse(scene.loads[k].kind == Load::Kind::plate, at_index("loads", k, "/kind"), "a plate load");
   for (std::size_t k = 0; k < scene.stages.size(); ++k) {
     const Stage& stage = scene.stages[k];
     refuse(!stage.remove_bodies.empty(), at_index("stages", k, "/remove_bodies"), "removing bodies");

@@ -19,7 +19,7 @@ double soil_reaction(const State<D>& s, int d, int face, double dt) {
   const double change = f.soil - f.soil_old;
   const double mirrored = -s.constants.inertia * s.image[d][face].soil * change;
   const bool stopped = s.soil_walls.closed(d, face) && f.soil == 0;
-  if (stopped) {
+  if (stopped || in_plate(s, d, face)) {
     const double drag = f.exchange * s.volume.face(d, face);
     return mirrored + s.constants.inertia * sums.soil_mass * (change - dt * s.constants.fall(d)) - drag;
   }
@@ -33,6 +33,9 @@ double water_reaction(const State<D>& s, int d, int face, double dt) {
   const FaceFlow& f = s.flow[d][face];
   if (s.water_walls.closed(d, face)) return -dt * sums.water_mass * s.constants.gravity[d];
   const double mirrored = -s.constants.inertia * s.image[d][face].water * (f.water - f.water_old);
+  if (in_plate(s, d, face))
+    return mirrored +
+           s.constants.inertia * sums.water_mass * (f.water - f.water_old - dt * s.constants.fall(d));
   if (f.wet > 1) return mirrored;  // carried along by the surface
   const double rho = s.constants.water_density, pressure = f.wet ? felt_gradient(s, d, face) : 0;
   return mirrored + dt * sums.water_mass * (f.viscous - (pressure + f.fixed_drag * f.water / f.n) / rho);

@@ -35,6 +35,21 @@ void find_surface(State<D>& s);
 /// Provisional velocities with drag inside, responses to a pressure gradient → `flow`.
 template <int D>
 void predict_velocities(State<D>& s, double dt);
+/// Which faces plates hold, from where they are now → `plates`, `plate_of`.
+template <int D>
+void mark_plates(State<D>& s);
+/// What kernels leave beyond plates mirrored back → `sums`, `cell_sums`.
+template <int D>
+void fold_plates(State<D>& s);
+/// Common velocities of what plates hold, and how these answer to the pressure → `plates`, `flow`.
+template <int D>
+void press_plates(State<D>& s, double dt);
+/// Plates after the pressure is known → `plates`, `flow`.
+template <int D>
+void settle_plates(State<D>& s, double dt);
+/// Plates move with their soil.
+template <int D>
+void move_plates(State<D>& s, double dt);
 /// Velocities after the pressure gradient; extrapolated a little way into the air → `flow`.
 template <int D>
 void correct_velocities(State<D>& s, double dt);
@@ -74,6 +89,13 @@ bool submerged(const State<D>& s, int d, int face) {
 /// Momentum, energies, mass and largest speeds of the points as they are → `report`.
 template <int D>
 void measure_motion(const State<D>& s, StepReport<D>& report);
+inline constexpr int kPlateAxis = 1;  ///< plates are horizontal
+/// Whether a face moves with a plate.
+template <int D>
+bool in_plate(const State<D>& s, int d, int face) {
+  if (d != kPlateAxis || s.plate_of.empty() || s.plate_of[face] == 0) return false;
+  return s.plates[s.plate_of[face] - 1].touches;
+}
 /// Whether the grains (and open water) of a face are pushed by the pressure: at wet faces, and at walls next
 /// to water, where the gradient is that of still water.
 template <int D>

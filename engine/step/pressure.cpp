@@ -46,6 +46,10 @@ void number_rows(State<D>& s, PressureSystem<D>& m) {
     s.cell[i].unknown = static_cast<int>(m.cell.size());
     m.cell.push_back(i);
   });
+  for (auto& piston : m.pistons) {
+    piston.row.clear();
+    for (int cell : piston.cell) piston.row.push_back(s.cell[cell].unknown);
+  }
 }
 
 /// About an axis a row is the balance of its cell per radian, so that the matrix stays symmetric: storage and
@@ -150,6 +154,12 @@ void multiply(const PressureSystem<D>& m, const std::vector<double>& x, std::vec
       if (const int j = m.lower[d][r]; j >= 0) t += m.coupling[d][j] * x[j];
     }
     y[r] = t;
+  }
+  for (const auto& piston : m.pistons) {
+    double sum = 0;
+    for (std::size_t k = 0; k < piston.row.size(); ++k) sum += piston.weight[k] * x[piston.row[k]];
+    for (std::size_t k = 0; k < piston.row.size(); ++k)
+      y[piston.row[k]] += piston.response * piston.weight[k] * sum;
   }
 }
 

@@ -12,6 +12,14 @@ struct PressureSystem {
   std::array<std::vector<int>, D> upper;        ///< row of the neighbour in +d, or −1
   std::array<std::vector<int>, D> lower;        ///< row of the neighbour in −d, or −1
   std::array<std::vector<double>, D> coupling;  ///< ≤ 0, to the upper neighbour
+
+  /// What moves as one against the pressure of many cells: `response` b bᵀ on the rows.
+  struct Piston {
+    double response = 0;         ///< 1/(Pa·s) per weight²
+    std::vector<int> cell, row;  ///< rows are numbered with the system
+    std::vector<double> weight;  ///< b: ±1, times the radius about an axis
+  };
+  std::vector<Piston> pistons;
 };
 
 }  // namespace quicksand

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "engine/grid/kernel_volumes.hpp"
@@ -125,6 +126,28 @@ struct SurfaceLoad {
   bool active = false;
 };
 
+/// A rigid, massless, horizontal plate on soil; engine/step/plates.cpp. It moves grains and water of a row of
+/// faces as one.
+template <int D>
+struct Plate {
+  Vec<D> low{}, high{};        ///< m, its extent at the start; `low` and `high` agree in y
+  bool rough = false;          ///< grains at it do not slide
+  bool driven = false;         ///< moved at `velocity`; otherwise pushed by `force`
+  Vec<D> velocity{};           ///< m/s at full load
+  double force = 0;            ///< N, upward, at full load
+  double start = 0, ramp = 0;  ///< s
+  bool active = false;
+
+  double sunk = 0;                          ///< m, how far it has moved up (negative: down)
+  double mass = 0;                          ///< kg, of all that moves with it in this step
+  double speed = 0;                         ///< m/s, upward
+  double speed_old = 0;                     ///< m/s, in the step before
+  double reaction = 0;                      ///< N, upward, from the plate on soil and water in the last step
+  bool touches = true;                      ///< false while it is lifted off the soil
+  std::vector<int> row;                     ///< faces of component y in its plane
+  std::vector<std::pair<int, int>> beside;  ///< rough: (component, face) just below the plane
+};
+
 /// A face of the boundary through which water enters and leaves; engine/step/ports.cpp.
 template <int D>
 struct Port {
@@ -183,6 +206,9 @@ struct State {
   BlockList soil_blocks, water_blocks;
   KernelVolumes<D> volume;
   std::vector<SurfaceLoad<D>> loads;
+  std::vector<Plate<D>> plates;
+  /// Per face of component y, 1 + index of the plate in whose row it lies, or 0. Empty without plates.
+  std::vector<std::int32_t> plate_of;
   std::vector<Port<D>> ports;
   std::vector<ReservoirState> reservoirs;
   std::vector<Straddler> straddlers;

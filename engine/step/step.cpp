@@ -49,9 +49,11 @@ double solve_velocities(State<D>& s, double dt, PressureReport& report, Stopwatc
   s.pressure_old = s.pressure;
   for (int cuts = 0; cuts <= kMostCuts; ++cuts, dt *= 0.5) {
     predict_velocities(s, dt);  // both momentum balances, drag inside
+    press_plates(s, dt);        // what plates hold moves as one
     clock.lap(Phase::velocities);
     report = solve_pressure(s, dt);  // mass balance of the mixture
     clock.lap(Phase::pressure);
+    settle_plates(s, dt);
     correct_velocities(s, dt);  // velocities that keep it
     const bool fits = !travels_too_far(s, dt);
     clock.lap(Phase::velocities);
@@ -77,6 +79,7 @@ StepReport<D> advance(State<D>& s, double dt) {
   report.dt = solve_velocities(s, dt, report.pressure, clock);
   report.finite = report.dt > 0;
   if (!report.finite) return report;
+  move_plates(s, report.dt);
   faces_to_points(s, report.dt, report);  // velocity, strain, stress, porosity, position
   pass_ports(s, report);                  // points that enter and leave
   clock.lap(Phase::to_points);

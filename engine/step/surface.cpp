@@ -55,7 +55,7 @@ void find_surface(State<D>& s) {
       for (int d = 0; d < D; ++d)
         for (int side : {0, 1}) {
           const int face = i + side * s.grid.stride[d], other = i + (2 * side - 1) * s.grid.stride[d];
-          if (s.water_walls.closed(d, face) || s.cell[other].unknown >= 0) continue;
+          if (s.water_walls.closed(d, face) || s.cell[other].unknown >= 0 || in_plate(s, d, face)) continue;
           if (!submerged(s, d, face)) c.confined = false;
         }
       if (excess > 0 || c.confined) c.excess = excess;

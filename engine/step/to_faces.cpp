@@ -129,6 +129,7 @@ void points_to_faces(State<D>& s) {
     loads_to_faces<typename S::Shape>(s);
   });
   if (s.constants.kernel == Kernel::linear) join_light_faces(s);
+  fold_plates(s);
 }
 
 namespace {

@@ -11,7 +11,7 @@ template <int D>
 double pressure_gradient(const State<D>& s, const std::vector<double>& inner, int d, int face) {
   const int low = face - s.grid.stride[d], high = face;
   const CellState &a = s.cell[low], &b = s.cell[high];
-  if (s.water_walls.closed(d, face))
+  if (s.water_walls.closed(d, face) || in_plate(s, d, face))
     return a.unknown >= 0 || b.unknown >= 0 ? s.constants.water_density * s.constants.gravity[d] : 0;
   const double inverse_h = s.grid.inverse_h;
   if (const Port<D>* port = port_at(s, d, face)) {

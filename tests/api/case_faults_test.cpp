@@ -152,10 +152,6 @@ const Mutation not_supported_yet[] = {
     {"Damping", ADD("/stages/0/damping", "0.2"), {"/stages/0/damping"}},
     {"SidewaysGravityWithK0", ADD("/gravity", "[1, -9.81]"), {"/initial/stress"}},
     {"RemoveBodies", ADD("/stages/1/remove_bodies", R"(["pond"])"), {"/stages/1/remove_bodies"}},
-    {"Plate",
-     SET("/loads/0",
-         R"({"name":"cover","kind":"plate","body":"sand","plate":{"from":[0.3,0.24],"to":[0.6,0.24]},"plate_velocity":[0,-1]})"),
-     {"/loads/0/kind"}},
 };
 
 INSTANTIATE_TEST_SUITE_P(Names, CaseSense, testing::ValuesIn(of_names), name_of);

@@ -1,0 +1,261 @@
+// Rigid plates on soil.
+//
+// A plate is a row of faces whose grains and water move as one. It has no mass of its own. With M the mass of
+// the row, the pressure p of the cells beside the row acting on its area, and F the force on it (or unknown,
+// if the speed V is given),
+//   M V = Σ m v + Δt (Σ f + M g + F + Σ b p),   b = ± area of a face (times the radius about an axis),
+// which the pressure solve takes in as one rank-1 term: V = V̂ + Δt/M Σ b p. Water does not pass: the flux
+// through the row is V. A plate pushes and never pulls. Its upper side is dry.
+//
+// Kernels of the soil below reach over the row. What they leave there is mirrored relative to the plate, as
+// at a wall: v_above = 2V − v_below. So the face below takes over the mass M′ and minus the force f′ of the
+// one above, and the row 2M′ and 2f′. A rough plate does the same with the sliding components.
+
+#include <cmath>
+
+#include "engine/step/phases.hpp"
+
+namespace quicksand {
+namespace {
+
+constexpr int kAlong = kPlateAxis;
+template <int D>
+double rise(const State<D>& s, const Plate<D>& plate) {
+  return plate.ramp > 0 ? std::clamp((s.time - plate.start) / plate.ramp, 0.0, 1.0) : 1;
+}
+
+template <int D>
+double area(const State<D>& s, int face) {
+  return s.grid.face_area() * s.grid.face_radius(kAlong, face);
+}
+
+/// Σ b p over the cells beside the row, N upward.
+template <int D>
+double push(const State<D>& s, const Plate<D>& plate, const std::vector<double>& pressure) {
+  double sum = 0;
+  for (int face : plate.row) {
+    const int below = face - s.grid.stride[kAlong];
+    if (s.cell[below].unknown >= 0) sum += area(s, face) * pressure[below];
+    if (s.cell[face].unknown >= 0) sum -= area(s, face) * pressure[face];
+  }
+  return sum;
+}
+
+template <int D>
+void hold_row(State<D>& s, const Plate<D>& plate) {
+  for (int face : plate.row) {
+    FaceFlow& f = s.flow[kAlong][face];
+    f.soil = f.water = plate.speed;
+    f.soil_response = f.water_response = 0;
+    f.drag = f.fixed_drag = f.viscous = 0;
+  }
+}
+
+/// Mass (kg), momentum (N·s), both × inertia, and stress force (N) of a plate's row.
+struct Carried {
+  double mass = 0, momentum = 0, force = 0;
+};
+template <int D>
+Carried carried(const State<D>& s, const Plate<D>& plate) {
+  Carried c;
+  for (int face : plate.row) {
+    const FaceSums& sums = s.sums[kAlong][face];
+    c.mass += s.constants.inertia * (sums.soil_mass + sums.water_mass);
+    c.momentum += s.constants.inertia * (sums.soil_momentum + sums.water_momentum);
+    c.force += sums.soil_force;
+  }
+  return c;
+}
+
+/// Folds the face `outer` beyond the plane back on `inner`; the plate moves at `speed` along d.
+template <int D>
+void fold_face(State<D>& s, int d, int inner, int outer, double speed) {
+  FaceSums &in = s.sums[d][inner], &out = s.sums[d][outer];
+  in.soil_momentum += 2 * speed * out.soil_mass - out.soil_momentum;
+  in.soil_force -= out.soil_force;
+  in.soil_mass += out.soil_mass;
+  in.grains += out.grains;
+  in.soil_bulk += out.soil_bulk;
+  in.resistivity += out.resistivity;
+  s.image[d][inner].soil += 2 * out.soil_mass;
+  const double water_mass = out.water_mass, water_momentum = out.water_momentum;
+  out = {};
+  out.water_mass = water_mass;
+  out.water_momentum = water_momentum;
+}
+
+/// The cell above a row holds what kernels of the ground below leave there, unless it is wet by itself.
+template <int D>
+void fold_cell(State<D>& s, int above) {
+  if (s.cell[above].unknown >= 0) return;
+  CellSums &in = s.cell_sums[above - s.grid.stride[kAlong]], &out = s.cell_sums[above];
+  in.water += out.water;
+  in.grains += out.grains;
+  in.soil_bulk += out.soil_bulk;
+  out = {};
+}
+
+template <int D>
+double sliding(const State<D>& s, const Plate<D>& plate, int d) {
+  return rise(s, plate) * plate.velocity[d];
+}
+
+}  // namespace
+
+template <int D>
+void fold_plates(State<D>& s) {
+  for (Plate<D>& plate : s.plates) {
+    plate.speed_old = plate.speed;
+    if (!plate.active || !plate.touches) continue;
+    const int up = s.grid.stride[kAlong];
+    for (int face : plate.row) {
+      FaceSums& row = s.sums[kAlong][face];
+      const FaceSums& out = s.sums[kAlong][face + up];
+      row.soil_mass += 2 * out.soil_mass;
+      row.soil_momentum += 2 * out.soil_mass * plate.speed;
+      row.soil_force += 2 * out.soil_force;
+      fold_face(s, kAlong, face - up, face + up, plate.speed);
+      fold_cell(s, face);
+    }
+    for (const auto& [d, inner] : plate.beside) fold_face(s, d, inner, inner + up, sliding(s, plate, d));
+  }
+}
+
+template <int D>
+void press_plates(State<D>& s, double dt) {
+  s.pressure_system.pistons.clear();
+  for (Plate<D>& plate : s.plates) {
+    if (!plate.active) continue;
+    const Carried c = carried(s, plate);
+    plate.mass = c.mass;
+    const double gravity = s.constants.fall(kAlong), load = rise(s, plate) * plate.force;
+    if (plate.mass <= kMassCutoff * s.constants.water_density * s.grid.cell_volume()) {
+      plate.touches = false;
+      continue;
+    }
+    plate.speed = (c.momentum + dt * (c.force + load)) / plate.mass + dt * gravity;
+    plate.touches = true;
+    if (plate.driven) {
+      const double given = rise(s, plate) * plate.velocity[kAlong];
+      plate.reaction = plate.mass * (given - plate.speed) / dt;  // less the pressure, below
+      plate.touches = plate.reaction - push(s, plate, s.pressure) <= 0;
+      plate.speed = given;
+    }
+    if (!plate.touches) continue;
+    hold_row(s, plate);
+    if (plate.driven) continue;
+    // Rows of the system are balances per area of a face: h^(D−1) of the force over h of the divergence.
+    typename PressureSystem<D>::Piston piston;
+    piston.response = dt / plate.mass * (D == 2 ? 1 : s.grid.h);
+    const auto add = [&](int cell, double weight) {
+      if (s.cell[cell].unknown < 0) return;
+      piston.cell.push_back(cell);
+      piston.weight.push_back(weight);
+    };
+    for (int face : plate.row) {
+      add(face - s.grid.stride[kAlong], s.grid.face_radius(kAlong, face));
+      add(face, -s.grid.face_radius(kAlong, face));
+    }
+    s.pressure_system.pistons.push_back(std::move(piston));
+  }
+}
+
+template <int D>
+void settle_plates(State<D>& s, double dt) {
+  const std::vector<double>& pressure = s.constants.explicit_pressure ? s.pressure_old : s.pressure;
+  for (Plate<D>& plate : s.plates) {
+    if (!plate.active || !plate.touches) continue;
+    const double pushed = push(s, plate, pressure);
+    if (plate.driven) {
+      plate.reaction -= pushed;
+    } else {
+      plate.reaction = rise(s, plate) * plate.force;
+      plate.speed += dt / plate.mass * pushed;
+    }
+    hold_row(s, plate);
+  }
+}
+
+namespace {
+
+/// Velocities beyond the plane, for the points whose kernels reach there.
+template <int D>
+void unfold(State<D>& s, const Plate<D>& plate) {
+  const int up = s.grid.stride[kAlong];
+  const auto mirror = [&](int d, int inner, int outer, double old_speed, double speed) {
+    const FaceFlow& in = s.flow[d][inner];
+    s.flow[d][outer].soil_old = 2 * old_speed - in.soil_old;
+    s.flow[d][outer].soil = 2 * speed - in.soil;
+  };
+  for (int face : plate.row) mirror(kAlong, face - up, face + up, plate.speed_old, plate.speed);
+  for (const auto& [d, inner] : plate.beside)
+    mirror(d, inner, inner + up, sliding(s, plate, d), sliding(s, plate, d));
+}
+
+}  // namespace
+
+template <int D>
+void move_plates(State<D>& s, double dt) {
+  for (Plate<D>& plate : s.plates) {
+    if (!plate.active) continue;
+    if (!plate.touches) {
+      plate.reaction = 0;
+      plate.speed = plate.driven ? rise(s, plate) * plate.velocity[kAlong] : 0;
+    }
+    s.load_force[kAlong] += plate.reaction;
+    if (plate.touches) unfold(s, plate);
+    const double before = plate.sunk;
+    plate.sunk += dt * plate.speed;
+    if (std::lround(before * s.grid.inverse_h) != std::lround(plate.sunk * s.grid.inverse_h)) mark_plates(s);
+  }
+}
+
+template <int D>
+void mark_plates(State<D>& s) {
+  if (s.plates.empty()) return;
+  s.plate_of.assign(s.grid.count(), 0);
+  for (std::size_t k = 0; k < s.plates.size(); ++k) {
+    Plate<D>& plate = s.plates[k];
+    plate.row.clear(), plate.beside.clear();
+    if (!plate.active) continue;
+    for_each_cell(s.grid, [&](int i, const Cell<D>& c) {
+      const Vec<D> x = s.grid.center(c);
+      // Rows from the plate's plane, the cell being the one above it.
+      const long rows = std::lround((x[kAlong] - plate.low[kAlong] - plate.sunk) * s.grid.inverse_h - 0.5);
+      if (rows != 0) return;
+      // Where the soil ends with the plate, kernels reach one column beyond; that belongs to the plate too.
+      const bool bare =
+          s.cell_sums[i - s.grid.stride[kAlong]].soil_bulk < 0.5 * s.volume.cell(i - s.grid.stride[kAlong]);
+      const double beyond = bare ? s.grid.h : 0;
+      bool inside = true;
+      for (int d = 0; d < D; ++d)
+        if (d != kAlong) inside = inside && x[d] > plate.low[d] - beyond && x[d] < plate.high[d] + beyond;
+      if (inside) {
+        plate.row.push_back(i);
+        s.plate_of[i] = static_cast<std::int32_t>(k + 1);
+      }
+      if (!plate.rough) return;
+      for (int d = 0; d < D; ++d) {
+        if (d == kAlong) continue;
+        const double edge = x[d] - 0.5 * s.grid.h, slack = 0.25 * s.grid.h;
+        bool on = edge > plate.low[d] - slack && edge < plate.high[d] + slack;
+        for (int e = 0; e < D; ++e)
+          if (e != kAlong && e != d) on = on && x[e] > plate.low[e] && x[e] < plate.high[e];
+        if (on) plate.beside.emplace_back(d, i - s.grid.stride[kAlong]);
+      }
+    });
+  }
+}
+
+template void fold_plates<2>(State<2>&);
+template void fold_plates<3>(State<3>&);
+template void press_plates<2>(State<2>&, double);
+template void press_plates<3>(State<3>&, double);
+template void settle_plates<2>(State<2>&, double);
+template void settle_plates<3>(State<3>&, double);
+template void move_plates<2>(State<2>&, double);
+template void move_plates<3>(State<3>&, double);
+template void mark_plates<2>(State<2>&);
+template void mark_plates<3>(State<3>&);
+
+}  // namespace quicksand
