@@ -114,18 +114,21 @@ double rotation_error(int steps) {
   Stress<D> s{};
   s[0] = -1e5, s[1] = -3e5, s[2] = -2e5, s[3] = 4e4;
   const Eigen::Matrix3d start = tensor(s);
+  // Turns about z at 1 rad/s: the gradient of the chords along which points move in a step.
+  const double dt = 0.5 * std::numbers::pi / steps;
   Gradient<D> l{};
-  l[0][1] = -1, l[1][0] = 1;  // turns about z at 1 rad/s
-  for (int i = 0; i < steps; ++i) s = update_stress<D>(material, s, l, 0.5 * std::numbers::pi / steps).stress;
+  l[0][0] = l[1][1] = (std::cos(dt) - 1) / dt;
+  l[1][0] = std::sin(dt) / dt, l[0][1] = -l[1][0];
+  for (int i = 0; i < steps; ++i) s = update_stress<D>(material, s, l, dt).stress;
   const Eigen::Matrix3d r = Eigen::AngleAxisd(0.5 * std::numbers::pi, Eigen::Vector3d::UnitZ()).matrix();
-  EXPECT_NEAR(tensor(s).trace(), start.trace(), 1e-9 * std::abs(start.trace()));  // exact at any step
+  EXPECT_NEAR(tensor(s).trace(), start.trace(), 1e-7 * std::abs(start.trace()));
   return (tensor(s) - r * start * r.transpose()).norm() / start.norm();
 }
 
 TEST(UpdateStress, RigidRotationTurnsTheStress) {  // Jaumann rate
   const double coarse = rotation_error<2>(1000), fine = rotation_error<2>(2000);
-  EXPECT_LT(coarse, 2e-3);
-  EXPECT_NEAR(coarse / fine, 2, 0.05);  // first order
+  EXPECT_LT(coarse, 2e-6);
+  EXPECT_NEAR(coarse / fine, 4, 0.2);  // second order
   EXPECT_NEAR(rotation_error<3>(1000), coarse, 1e-9);
 }
 
@@ -160,7 +163,8 @@ TEST(UpdateStress, SimpleShearIsTheShearModulus) {
   l[1][2] = 1;
   const auto u = update_stress<3>(material, {}, l, 1e-3);
   EXPECT_NEAR(u.stress[4], 1e-3 * elastic(material).shear, 1e-8);
-  for (int i : {0, 1, 2, 3, 5}) EXPECT_EQ(u.stress[i], 0) << i;
+  // The rest is the stretch of a finite shear, second order in it.
+  for (int i : {0, 1, 2, 3, 5}) EXPECT_LT(std::abs(u.stress[i]), 1e-3 * u.stress[4]) << i;
 }
 
 TEST(UpdateStress, ThePlaneIsSpaceWithoutThirdStrain) {
