@@ -105,7 +105,6 @@ double sliding(const State<D>& s, const Plate<D>& plate, int d) {
 template <int D>
 void fold_plates(State<D>& s) {
   for (Plate<D>& plate : s.plates) {
-    plate.speed_old = plate.speed;
     if (!plate.active || !plate.touches) continue;
     const int up = s.grid.stride[kAlong];
     for (int face : plate.row) {
@@ -187,7 +186,7 @@ void unfold(State<D>& s, const Plate<D>& plate) {
     s.flow[d][outer].soil_old = 2 * old_speed - in.soil_old;
     s.flow[d][outer].soil = 2 * speed - in.soil;
   };
-  for (int face : plate.row) mirror(kAlong, face - up, face + up, plate.speed_old, plate.speed);
+  for (int face : plate.row) mirror(kAlong, face - up, face + up, s.flow[kAlong][face].soil_old, plate.speed);
   for (const auto& [d, inner] : plate.beside)
     mirror(d, inner, inner + up, sliding(s, plate, d), sliding(s, plate, d));
 }

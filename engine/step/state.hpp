@@ -141,7 +141,6 @@ struct Plate {
   double sunk = 0;                          ///< m, how far it has moved up (negative: down)
   double mass = 0;                          ///< kg, of all that moves with it in this step
   double speed = 0;                         ///< m/s, upward
-  double speed_old = 0;                     ///< m/s, in the step before
   double reaction = 0;                      ///< N, upward, from the plate on soil and water in the last step
   bool touches = true;                      ///< false while it is lifted off the soil
   std::vector<int> row;                     ///< faces of component y in its plane
