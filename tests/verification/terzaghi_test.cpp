@@ -126,8 +126,8 @@ TEST(Terzaghi, ConvergesWithTheCells) {
               std::log2(middle.pressure / fine.pressure),
               std::log2(coarse.consolidation / middle.consolidation),
               std::log2(middle.consolidation / fine.consolidation));
-  EXPECT_GE(0.5 * std::log2(coarse.pressure / fine.pressure), 1.5);
-  EXPECT_GE(0.5 * std::log2(coarse.consolidation / fine.consolidation), 1.5);
+  EXPECT_GE(0.5 * std::log2(coarse.pressure / fine.pressure), kPressureOrder);
+  EXPECT_GE(0.5 * std::log2(coarse.consolidation / fine.consolidation), kConsolidationOrder);
 }
 
 /// Days to years in the same number of steps.
