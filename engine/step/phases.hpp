@@ -15,6 +15,12 @@ void follow_discharge(State<D>& s);
 /// Points → `sums`, `cell_sums`.
 template <int D>
 void points_to_faces(State<D>& s);
+/// Loads on the surfaces of bodies → `sums`, `load_force`.
+template <int D>
+void loads_to_faces(State<D>& s);
+/// Markers of the loads move with the grains.
+template <int D>
+void move_loads(State<D>& s, double dt);
 /// Linear kernel only: gives what acts on faces that hold next to nothing of a soil body to a neighbour that
 /// does → `follower`, `sums`.
 template <int D>

@@ -116,12 +116,20 @@ struct Constants {
   std::vector<StepLimit> step_limits;  ///< per soil
 };
 
-/// A load on one side of a soil body: massless markers that ride on its surface.
+/// Carries its part of a surface load in the layer of soil below the surface; moves with the grains.
+template <int D>
+struct LoadMarker {
+  Vec<D> x{};         ///< m
+  Vec<D> normal{};    ///< –, F N: the outward direction at the start, stretched and turned with the soil
+  double area = 0;    ///< m², ∂χ/∂N dV0; about an axis times the surface's radius; sums to the surface
+  double volume = 0;  ///< m³, χ dV0
+};
+
+/// A load on one side of a soil body; engine/step/loads.cpp.
 template <int D>
 struct SurfaceLoad {
-  std::vector<Vec<D>> marker;  ///< m
-  std::vector<double> area;    ///< m², of each marker; about an axis times the radius at the start
-  Vec<D> traction{};           ///< Pa at full load
+  std::vector<LoadMarker<D>> markers;
+  Vec<D> traction{};  ///< Pa at full load
   double start = 0, ramp = 0;  ///< s
   bool active = false;
 };

@@ -14,6 +14,8 @@ namespace {
 
 constexpr double kLoad = 1e3, kHeight = 1, kYoung = 1e7, kPoisson = 0.3;  // of cases/terzaghi
 constexpr double kModulus = kYoung * (1 - kPoisson) / ((1 + kPoisson) * (1 - 2 * kPoisson));
+/// Pore water stores some of what drains: c_v = k/γw / (1/Ec + n/Kw), 0.24 % less than with rigid water.
+constexpr double kStorage = 1 / kModulus + 0.4 / 2.2e9;  // 1/Pa
 /// From here on errors count: before, the load's wave crosses the column (T = 0.017 at k = 1e-3 m/s).
 constexpr double kFirstT = 0.05;
 
@@ -38,7 +40,7 @@ double consolidation(double t) {
 /// The case with another permeability, over T = 0…1, on a column two cells wide.
 Scene column(double permeability, int cells, bool quasi_static) {
   Scene s = load_case("terzaghi", 20.0 / cells);
-  const double h = s.cell_size(), seconds = kHeight * kHeight * 9810 / (permeability * kModulus);
+  const double h = s.cell_size(), seconds = kHeight * kHeight * 9810 * kStorage / permeability;
   s.domain.max = {2 * h, kHeight + 4 * h, 0};
   s.bodies[0].region.max[0] = 2 * h;
   s.output.probes[0].at[0] = h;
