@@ -134,6 +134,14 @@ double felt_gradient(const State<D>& s, int d, int face) {
   return pressure_gradient(s, s.constants.explicit_pressure ? s.pressure_old : s.pressure, d, face);
 }
 
+/// The gradient that the grains of a face feel, Pa/m.
+template <int D>
+double gradient_on_grains(const State<D>& s, int d, int face) {
+  const FaceFlow& f = s.flow[d][face];
+  if (f.soaked > 0) return f.soaked * felt_gradient(s, d, f.soaked_by);
+  return feels_pressure(s, d, face) ? felt_gradient(s, d, face) : 0;
+}
+
 /// Acceleration of the water by its viscosity at a face that carries water, m/s².
 template <int D>
 double viscous_acceleration(const State<D>& s, int d, int face);

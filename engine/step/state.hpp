@@ -58,6 +58,10 @@ struct FaceFlow {
   double phi = 0, n = 1;                         ///< –, moving grains; room for water
   std::uint8_t wet = 0;                          ///< 1: a side has pressure; 2, 3: extrapolated from such
   bool soil_held = false;                        ///< grains are in contact with a wall here
+  /// –, part of the soil of a face just above the water surface that lies below it, as far as kernels reach: it
+  /// shares the pressure gradient of the face at the surface, `soaked_by`.
+  double soaked = 0;
+  int soaked_by = -1;
 
   double drag = 0;        ///< N·s/m⁴ per cell volume, between the phases
   double fixed_drag = 0;  ///< N·s/m⁴ on the water, of grains that do not move
