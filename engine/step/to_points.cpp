@@ -150,11 +150,11 @@ void soil_from_faces(State<D>& s, std::uint32_t p, double dt, double pic, Totals
   const double hoop = S::axial ? step[0] / (dt * soil.x[p][0]) : 0;  // 1/s, v_r/r
   totals.interventions.clipped_points += move_point<D>(s.grid, s.soil_walls, kernel.home, soil.x[p], step);
 
-  // Dˢn/Dt = (1−n) ∇·vˢ, integrated: the grains' volume stays.
-  double divergence = hoop;
-  for (int d = 0; d < D; ++d) divergence += l[d][d];
+  // Dˢn/Dt = (1−n) ∇·vˢ, integrated: the grains' volume stays. A step that turns the soil has ∇·vˢ < 0, as
+  // its chords lead inward of their arcs; the determinant knows.
   const double before = soil.porosity[p];
-  const double exact = 1 - (1 - before) / std::max(1 + dt * divergence, 0.1);
+  const double stretch = volume_ratio<D>(l, dt) * (1 + dt * hoop);
+  const double exact = 1 - (1 - before) / std::max(stretch, 0.1);
   const double n = soil.porosity[p] = std::clamp(exact, kMinRoom, kMaxPorosity);
   totals.interventions.clamped_values += n != exact;
 
