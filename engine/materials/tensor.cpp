@@ -35,7 +35,8 @@ Principal principal_plane(const Stress<2>& s) {
   // cos and sin of half the angle of (half, xy), the larger one first so that nothing cancels.
   double c = 1, sn = 0;
   if (radius > 0) {
-    const double larger = std::sqrt(0.5 * (1 + std::abs(half) / radius)), other = s[3] / (2 * radius * larger);
+    const double larger = std::sqrt(0.5 * (1 + std::abs(half) / radius)),
+                 other = s[3] / (2 * radius * larger);
     c = half >= 0 ? larger : std::abs(other);
     sn = half >= 0 ? other : std::copysign(larger, s[3]);
   }

@@ -7,7 +7,8 @@
 namespace quicksand {
 namespace {
 
-/// Depth over which a load is handed to the soil, in cells: twice what a kernel reaches. Deeper: more markers.
+/// Depth over which a load is handed to the soil, in cells: twice what a kernel reaches. Deeper: more
+/// markers.
 constexpr double kLoadDepth = 3;
 
 /// χ at a depth, as part of the layer's: 1 … 0, flat at either end.

@@ -6,9 +6,9 @@
 // one over the layer below it. With χ = 1 on S and 0 from `kLoadDepth` down, and N the outward direction at
 // the start,
 //   ∫_S t w dS = ∫_V0 t ∂(χ w)/∂N dV0 = ∫_V0 t [χ (F N)·∇w + w ∂χ/∂N] dV0,
-// summed over markers that move with the points of that layer. Stress and load are then summed alike, and what
-// is left of their difference, (1−χ) σ, vanishes where the surface cuts the kernels. χ is constant over the
-// share of each point and jumps between them, where the second term has its markers: with points on their
+// summed over markers that move with the points of that layer. Stress and load are then summed alike, and
+// what is left of their difference, (1−χ) σ, vanishes where the surface cuts the kernels. χ is constant over
+// the share of each point and jumps between them, where the second term has its markers: with points on their
 // lattice the sum is exact.
 
 #include <cmath>
@@ -55,11 +55,10 @@ void loads_to_faces(State<D>& s) {
         for (int d = 0; d < D; ++d) {
           const double t = rise * load.traction[d];
           s.load_force[d] += m.area * t;
-          for_faces(s.grid, s.soil_walls, kernel, d,
-                    [&](int face, double w, double sign, const Vec<D>& gradient) {
-                      s.sums[d][face].soil_force +=
-                          sign * t * (m.volume * dot<D>(m.normal, gradient) + m.area * w);
-                    });
+          for_faces(
+              s.grid, s.soil_walls, kernel, d, [&](int face, double w, double sign, const Vec<D>& gradient) {
+                s.sums[d][face].soil_force += sign * t * (m.volume * dot<D>(m.normal, gradient) + m.area * w);
+              });
         }
       }
     }

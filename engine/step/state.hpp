@@ -15,6 +15,7 @@
 #include "engine/materials/stability.hpp"
 #include "engine/points/blocks.hpp"
 #include "engine/points/points.hpp"
+#include "engine/step/multigrid.hpp"
 #include "engine/step/pressure_system.hpp"
 
 namespace quicksand {
@@ -58,8 +59,8 @@ struct FaceFlow {
   double phi = 0, n = 1;                         ///< –, moving grains; room for water
   std::uint8_t wet = 0;                          ///< 1: a side has pressure; 2, 3: extrapolated from such
   bool soil_held = false;                        ///< grains are in contact with a wall here
-  /// –, part of the soil of a face just above the water surface that lies below it, as far as kernels reach: it
-  /// shares the pressure gradient of the face at the surface, `soaked_by`.
+  /// –, part of the soil of a face just above the water surface that lies below it, as far as kernels reach:
+  /// it shares the pressure gradient of the face at the surface, `soaked_by`.
   double soaked = 0;
   int soaked_by = -1;
 
@@ -138,7 +139,7 @@ struct LoadMarker {
 template <int D>
 struct SurfaceLoad {
   std::vector<LoadMarker<D>> markers;
-  Vec<D> traction{};  ///< Pa at full load
+  Vec<D> traction{};           ///< Pa at full load
   double start = 0, ramp = 0;  ///< s
   bool active = false;
 };
@@ -244,6 +245,7 @@ struct State {
   std::vector<double> pressure;      ///< Pa per cell; 0 in air
   std::vector<double> pressure_old;  ///< Pa, at the start of the step
   PressureSystem<D> pressure_system;
+  Multigrid<D> multigrid;  ///< of the pressure system
 
   double time = 0;      ///< s
   Vec<D> momentum{};    ///< N·s, Σ m v of all moving points, × inertia

@@ -96,14 +96,15 @@ double wet_part(const State<D>& s, int d, int face) {
     return s.cell[from].unknown >= 0 && s.cell[to].unknown < 0 && !s.water_walls.closed(d, between);
   };
   const bool inside = s.cell[face].unknown >= 0 && s.cell[face - step].unknown >= 0;
-  if (inside && !dry(face, face + step, face + step) && !dry(face - step, face - 2 * step, face - step)) return 1;
+  if (inside && !dry(face, face + step, face + step) && !dry(face - step, face - 2 * step, face - step))
+    return 1;
   const Taken t = taken(s, d, face);
   return std::clamp(std::max(t.fill, t.bulk), kLeastWetPart, 1.0);
 }
 
-/// A face between air cells, next to the face at the water surface: what kernels reach there of the soil below
-/// the surface feels the pressure as that face does. Without it a saturated layer drains 1/48 of a cell above
-/// its top. Returns the part of the face's volume that soil and water take; 0 for other faces.
+/// A face between air cells, next to the face at the water surface: what kernels reach there of the soil
+/// below the surface feels the pressure as that face does. Without it a saturated layer drains 1/48 of a cell
+/// above its top. Returns the part of the face's volume that soil and water take; 0 for other faces.
 template <int D>
 double soak(const State<D>& s, int d, int face, FaceFlow& f) {
   const int step = s.grid.stride[d];
