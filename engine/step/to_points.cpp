@@ -63,21 +63,18 @@ bool falls_freely(const State<D>& s, const PointKernel<D, Shape>& kernel) {
   return depth < -kFreeHeight;
 }
 
-/// Way of the water at x in dt by the midpoint rule; Euler's way leads out of every bend.
+/// Way of the water at x in dt by the midpoint rule; Euler's way leads out of every bend. `half` is half the way
+/// by the kernel's own velocity, near enough for the middle.
 template <class Shape, int D>
-Vec<D> path(const State<D>& s, const Vec<D>& x, double dt) {
-  const auto way = [&](const PointKernel<D, typename Shape::Mover>& kernel, double seconds) {
-    Vec<D> u{};
-    for (int d = 0; d < D; ++d)
-      for_faces(s.grid, s.water_walls, kernel, d, [&](int face, double w, double sign, const Vec<D>&) {
-        u[d] += seconds * sign * w * s.speeds[d][face].water;
-      });
-    return u;
-  };
-  const PointKernel<D, typename Shape::Mover> start(s.grid, x);
-  Vec<D> middle = x;
-  move_point<D>(s.grid, s.water_walls, start.home, middle, way(start, 0.5 * dt));
-  return way({s.grid, middle}, dt);
+Vec<D> path(const State<D>& s, int home, const Vec<D>& x, const Vec<D>& half, double dt) {
+  Vec<D> middle = x, way{};
+  move_point<D>(s.grid, s.water_walls, home, middle, half);
+  const PointKernel<D, typename Shape::Mover> kernel(s.grid, middle);
+  for (int d = 0; d < D; ++d)
+    for_faces(s.grid, s.water_walls, kernel, d, [&](int face, double w, double sign, const Vec<D>&) {
+      way[d] += dt * sign * w * s.speeds[d][face].water;
+    });
+  return way;
 }
 
 template <class S, int D>
@@ -107,7 +104,10 @@ void water_from_faces(State<D>& s, std::uint32_t p, double dt, double pic, Total
     totals.momentum[d] += water.mass[p] * v;
     speed2 += v * v;
   }
-  if (!falls) step = path<typename S::Shape, D>(s, water.x[p], dt);
+  if (!falls) {
+    for (double& component : step) component *= 0.5;
+    step = path<typename S::Shape, D>(s, kernel.home, water.x[p], step, dt);
+  }
   totals.interventions.clipped_points += move_point<D>(s.grid, s.water_walls, kernel.home, water.x[p], step);
   totals.mass += water.mass[p];
   totals.kinetic += 0.5 * water.mass[p] * speed2;
