@@ -1,11 +1,11 @@
 #include "engine/run/setup.hpp"
 
 #include <cmath>
-#include <map>
 
 #include "engine/grid/scene_grid.hpp"
 #include "engine/points/seeding.hpp"
 #include "engine/run/initial_state.hpp"
+#include "engine/run/surface_load.hpp"
 #include "engine/step/phases.hpp"
 
 namespace quicksand {
@@ -31,33 +31,6 @@ Constants<D> make_constants(const Scene& scene, const Grid<D>& grid) {
                                bounding_edge(c.kernel, grid.h));
   }
   return c;
-}
-
-/// Markers along one side of a body, as close as its points: the outermost soil points of each row across the
-/// side, moved out by half their spacing.
-template <int D>
-SurfaceLoad<D> make_load(const Scene& scene, const Load& load, const State<D>& s) {
-  const double spacing = s.grid.h / scene.numerics.points_per_cell;
-  const int axis = static_cast<int>(load.side) / 2, out = static_cast<int>(load.side) % 2 ? 1 : -1;
-  std::map<std::array<long, D>, Vec<D>> outermost;  // by row of seeding places
-  for (std::size_t p = 0; p < s.soil.size(); ++p) {
-    if (scene.bodies[s.soil.body[p]].name != load.body) continue;
-    std::array<long, D> row{};
-    for (int d = 0; d < D; ++d)
-      if (d != axis) row[d] = static_cast<long>(std::floor((s.soil.x[p][d] - s.grid.origin[d]) / spacing));
-    Vec<D>& x = outermost.try_emplace(row, s.soil.x[p]).first->second;
-    if (out * (s.soil.x[p][axis] - x[axis]) > 0) x = s.soil.x[p];
-  }
-  SurfaceLoad<D> result;
-  const double area = D == 2 ? spacing : spacing * spacing;
-  for (auto& [row, x] : outermost) {
-    x[axis] += 0.5 * out * spacing;
-    result.marker.push_back(x);
-    result.area.push_back(area * s.grid.radius(x));
-  }
-  for (int d = 0; d < D; ++d) result.traction[d] = load.traction[d];
-  result.ramp = load.ramp;
-  return result;
 }
 
 template <int D>

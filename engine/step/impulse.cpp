@@ -23,8 +23,7 @@ double soil_reaction(const State<D>& s, int d, int face, double dt) {
     const double drag = f.exchange * s.volume.face(d, face);
     return mirrored + s.constants.inertia * sums.soil_mass * (change - dt * s.constants.fall(d)) - drag;
   }
-  const double pressure = feels_pressure(s, d, face) ? -sums.grains * felt_gradient(s, d, face) : 0;
-  return mirrored + dt * (sums.soil_force + pressure);
+  return mirrored + dt * (sums.soil_force - sums.grains * gradient_on_grains(s, d, face));
 }
 
 template <int D>

@@ -15,6 +15,12 @@ void follow_discharge(State<D>& s);
 /// Points → `sums`, `cell_sums`.
 template <int D>
 void points_to_faces(State<D>& s);
+/// Loads on the surfaces of bodies → `sums`, `load_force`.
+template <int D>
+void loads_to_faces(State<D>& s);
+/// Markers of the loads move with the grains.
+template <int D>
+void move_loads(State<D>& s, double dt);
 /// Linear kernel only: gives what acts on faces that hold next to nothing of a soil body to a neighbour that
 /// does → `follower`, `sums`.
 template <int D>
@@ -127,6 +133,14 @@ double pressure_gradient(const State<D>& s, int d, int face) {
 template <int D>
 double felt_gradient(const State<D>& s, int d, int face) {
   return pressure_gradient(s, s.constants.explicit_pressure ? s.pressure_old : s.pressure, d, face);
+}
+
+/// The gradient that the grains of a face feel, Pa/m.
+template <int D>
+double gradient_on_grains(const State<D>& s, int d, int face) {
+  const FaceFlow& f = s.flow[d][face];
+  if (f.soaked > 0) return f.soaked * felt_gradient(s, d, f.soaked_by);
+  return feels_pressure(s, d, face) ? felt_gradient(s, d, face) : 0;
 }
 
 /// Acceleration of the water by its viscosity at a face that carries water, m/s².

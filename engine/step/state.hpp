@@ -58,6 +58,10 @@ struct FaceFlow {
   double phi = 0, n = 1;                         ///< –, moving grains; room for water
   std::uint8_t wet = 0;                          ///< 1: a side has pressure; 2, 3: extrapolated from such
   bool soil_held = false;                        ///< grains are in contact with a wall here
+  /// –, part of the soil of a face just above the water surface that lies below it, as far as kernels reach: it
+  /// shares the pressure gradient of the face at the surface, `soaked_by`.
+  double soaked = 0;
+  int soaked_by = -1;
 
   double drag = 0;                             ///< N·s/m⁴ per cell volume, between the phases
   double fixed_drag = 0;                       ///< N·s/m⁴ on the water, of grains that do not move
@@ -118,12 +122,20 @@ struct Constants {
   std::vector<StepLimit> step_limits;  ///< per soil
 };
 
-/// A load on one side of a soil body: massless markers that ride on its surface.
+/// Carries its part of a surface load in the layer of soil below the surface; moves with the grains.
+template <int D>
+struct LoadMarker {
+  Vec<D> x{};         ///< m
+  Vec<D> normal{};    ///< –, F N: the outward direction at the start, stretched and turned with the soil
+  double area = 0;    ///< m², ∂χ/∂N dV0; about an axis times the surface's radius; sums to the surface
+  double volume = 0;  ///< m³, χ dV0
+};
+
+/// A load on one side of a soil body; engine/step/loads.cpp.
 template <int D>
 struct SurfaceLoad {
-  std::vector<Vec<D>> marker;  ///< m
-  std::vector<double> area;    ///< m², of each marker; about an axis times the radius at the start
-  Vec<D> traction{};           ///< Pa at full load
+  std::vector<LoadMarker<D>> markers;
+  Vec<D> traction{};  ///< Pa at full load
   double start = 0, ramp = 0;  ///< s
   bool active = false;
 };

@@ -3,15 +3,13 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/step/move_point.hpp"
 #include "engine/step/phases.hpp"
 #include "engine/step/scheme.hpp"
 #include "engine/step/step.hpp"
 
 namespace quicksand {
 namespace {
-
-/// Distance from a wall at which a point that would enter it is put back, in cells.
-constexpr double kClearance = 1e-6;
 
 /// Totals of one block; summed over blocks in their order.
 template <int D>
@@ -37,30 +35,6 @@ struct Totals {
     return *this;
   }
 };
-
-/// Moves x by u; a closed face on the way stops the component across it. Returns whether it did.
-template <int D>
-bool move(const Grid<D>& grid, const Walls<D>& walls, int home, Vec<D>& x, const Vec<D>& u) {
-  if (!walls.folds(home)) {
-    for (int d = 0; d < D; ++d) x[d] += u[d];
-    return false;
-  }
-  bool stopped = false;
-  for (int d = 0; d < D; ++d) {
-    const Cell<D> c = grid.cell_of(x);
-    const double low = grid.origin[d] + c[d] * grid.h, high = low + grid.h;
-    const int face = grid.index(c);
-    x[d] += u[d];
-    if (x[d] <= low && walls.closed(d, face)) {
-      stopped = stopped || x[d] < low;
-      x[d] = low + kClearance * grid.h;
-    } else if (x[d] >= high && walls.closed(d, face + grid.stride[d])) {
-      stopped = stopped || x[d] > high;
-      x[d] = high - kClearance * grid.h;
-    }
-  }
-  return stopped;
-}
 
 /// FLIP with a little PIC: the point keeps its own velocity plus the grid's change, and relaxes to the
 /// grid's velocity at `pic_rate`, a rate so that the damping does not depend on the time step. The affine
@@ -102,7 +76,7 @@ Vec<D> path(const State<D>& s, const Vec<D>& x, double dt) {
   };
   const PointKernel<D, typename Shape::Mover> start(s.grid, x);
   Vec<D> middle = x;
-  move<D>(s.grid, s.water_walls, start.home, middle, way(start, 0.5 * dt));
+  move_point<D>(s.grid, s.water_walls, start.home, middle, way(start, 0.5 * dt));
   return way({s.grid, middle}, dt);
 }
 
@@ -133,7 +107,7 @@ void water_from_faces(State<D>& s, std::uint32_t p, double dt, double pic, Total
     speed2 += v * v;
   }
   if (!falls) step = path<typename S::Shape, D>(s, water.x[p], dt);
-  totals.interventions.clipped_points += move<D>(s.grid, s.water_walls, kernel.home, water.x[p], step);
+  totals.interventions.clipped_points += move_point<D>(s.grid, s.water_walls, kernel.home, water.x[p], step);
   totals.mass += water.mass[p];
   totals.kinetic += 0.5 * water.mass[p] * speed2;
   totals.max_speed2 = std::max(totals.max_speed2, speed2);
@@ -174,13 +148,13 @@ void soil_from_faces(State<D>& s, std::uint32_t p, double dt, double pic, Totals
     speed2 += v * v;
   }
   const double hoop = S::axial ? step[0] / (dt * soil.x[p][0]) : 0;  // 1/s, v_r/r
-  totals.interventions.clipped_points += move<D>(s.grid, s.soil_walls, kernel.home, soil.x[p], step);
+  totals.interventions.clipped_points += move_point<D>(s.grid, s.soil_walls, kernel.home, soil.x[p], step);
 
-  // Dˢn/Dt = (1−n) ∇·vˢ, integrated: the grains' volume stays.
-  double divergence = hoop;
-  for (int d = 0; d < D; ++d) divergence += l[d][d];
+  // Dˢn/Dt = (1−n) ∇·vˢ, integrated: the grains' volume stays. A step that turns the soil has ∇·vˢ < 0, as
+  // its chords lead inward of their arcs; the determinant knows.
   const double before = soil.porosity[p];
-  const double exact = 1 - (1 - before) / std::max(1 + dt * divergence, 0.1);
+  const double stretch = volume_ratio<D>(l, dt) * (1 + dt * hoop);
+  const double exact = 1 - (1 - before) / std::max(stretch, 0.1);
   const double n = soil.porosity[p] = std::clamp(exact, kMinRoom, kMaxPorosity);
   totals.interventions.clamped_values += n != exact;
 
@@ -209,21 +183,6 @@ void soil_from_faces(State<D>& s, std::uint32_t p, double dt, double pic, Totals
   totals.finite = totals.finite && std::isfinite(speed2) && std::isfinite(strain);
 }
 
-/// Markers of a surface load ride on the grains.
-template <class Shape, int D>
-void move_loads(State<D>& s, double dt) {
-  for (SurfaceLoad<D>& load : s.loads)
-    for (Vec<D>& x : load.marker) {
-      const PointKernel<D, Shape> kernel(s.grid, x);
-      Vec<D> step{};
-      for (int d = 0; d < D; ++d)
-        for_faces(s.grid, s.soil_walls, kernel, d, [&](int face, double w, double sign, const Vec<D>&) {
-          step[d] += dt * sign * w * s.flow[d][face].soil;
-        });
-      move<D>(s.grid, s.soil_walls, kernel.home, x, step);
-    }
-}
-
 }  // namespace
 
 template <int D>
@@ -236,7 +195,7 @@ void faces_to_points(State<D>& s, double dt, StepReport<D>& report) {
   report.damped = supports.damped;
   const Totals<D> totals = with_scheme(s, [&](auto scheme) {
     using S = decltype(scheme);
-    const Totals<D> sum = s.blocks.template sum<Totals<D>>([&](int b) {
+    return s.blocks.template sum<Totals<D>>([&](int b) {
       Totals<D> t;
       for (auto i = s.soil_blocks.begin[b]; i < s.soil_blocks.begin[b + 1]; ++i)
         soil_from_faces<S>(s, s.soil_blocks.order[i], dt, pic, t);
@@ -244,9 +203,8 @@ void faces_to_points(State<D>& s, double dt, StepReport<D>& report) {
         water_from_faces<S>(s, s.water_blocks.order[i], dt, pic, t);
       return t;
     });
-    move_loads<typename S::Shape>(s, dt);
-    return sum;
   });
+  move_loads(s, dt);
   const double inertia = s.constants.inertia;
   for (int d = 0; d < D; ++d) {
     report.impulse_surface[d] += inertia * totals.let_go[d];

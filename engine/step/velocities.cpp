@@ -106,16 +106,49 @@ int leaving_direction(const State<D>& s, int d, int face) {
   return low == high ? 0 : low ? 1 : -1;
 }
 
-/// Part of a wet face's volume that is soil or below the water surface; 1 away from the surface.
+/// What soil and water take of a face's volume, –.
+struct Taken {
+  double bulk = 0, fill = 0;  ///< soil with its pores; what lies below the water surface
+};
 template <int D>
-double wet_part(const State<D>& s, int d, int face) {
-  if (s.cell[face].unknown >= 0 && s.cell[face - s.grid.stride[d]].unknown >= 0) return 1;
+Taken taken(const State<D>& s, int d, int face) {
   const FaceSums& f = s.sums[d][face];
   const double volume = s.volume.face(d, face);
   const FixedFace fixed = s.fixed.size() ? s.fixed_face[d][face] : FixedFace{};
   const double grains = f.grains / volume + fixed.phi, bulk = f.soil_bulk / volume + fixed.bulk;
-  const double fill = fill_of(f.water_mass / (s.constants.water_density * volume), grains, bulk);
-  return std::clamp(std::max(fill, bulk), kLeastWetPart, 1.0);
+  return {bulk, fill_of(f.water_mass / (s.constants.water_density * volume), grains, bulk)};
+}
+
+/// Part of a wet face's volume that is soil or below the water surface; 1 where its kernel, 1½ cells long,
+/// does not reach the surface.
+template <int D>
+double wet_part(const State<D>& s, int d, int face) {
+  const int step = s.grid.stride[d];
+  const auto dry = [&](int from, int to, int between) {
+    return s.cell[from].unknown >= 0 && s.cell[to].unknown < 0 && !s.water_walls.closed(d, between);
+  };
+  const bool inside = s.cell[face].unknown >= 0 && s.cell[face - step].unknown >= 0;
+  if (inside && !dry(face, face + step, face + step) && !dry(face - step, face - 2 * step, face - step)) return 1;
+  const Taken t = taken(s, d, face);
+  return std::clamp(std::max(t.fill, t.bulk), kLeastWetPart, 1.0);
+}
+
+/// A face between air cells, next to the face at the water surface: what kernels reach there of the soil below
+/// the surface feels the pressure as that face does. Without it a saturated layer drains 1/48 of a cell above
+/// its top. Returns the part of the face's volume that soil and water take; 0 for other faces.
+template <int D>
+double soak(const State<D>& s, int d, int face, FaceFlow& f) {
+  const int step = s.grid.stride[d];
+  for (const int side : {-1, 1}) {
+    const int next = face + side * step, wet_cell = side < 0 ? face - 2 * step : next;
+    if (s.cell[wet_cell].unknown < 0 || s.water_walls.closed(d, next) || in_plate(s, d, next)) continue;
+    const Taken t = taken(s, d, face);
+    if (t.bulk <= 0 || t.fill <= 0) return 0;
+    f.soaked = std::min(1.0, t.fill / t.bulk);
+    f.soaked_by = next;
+    return std::max(t.fill, t.bulk);
+  }
+  return 0;
 }
 
 template <int D>
@@ -138,7 +171,8 @@ void predict_face(State<D>& s, int d, int face, double dt) {
 
   // A face at the water surface stands for the wet part of its volume: what half a face of saturated soil
   // holds is dense over that half, and the pressure falls over that half only.
-  const double part = f.wet ? wet_part(s, d, face) : 1;
+  const double soaked = soil && water && !f.wet ? soak(s, d, face, f) : 0;
+  const double part = f.wet ? wet_part(s, d, face) : soaked > 0 ? soaked : 1;
   Balance b;
   f.phi = sums.grains / (part * volume);
   double fixed_phi = 0, fixed_resistivity = 0;
@@ -156,7 +190,7 @@ void predict_face(State<D>& s, int d, int face, double dt) {
     // Inertia of a wet face is that of a full one, n ρw, not of the few drops whose kernels reach it; where
     // there is no pressure, drops carry and are dragged by what is there.
     const double full = f.n * rho;
-    const double there = f.wet ? 1 : std::min(1.0, sums.water_mass / (volume * full));
+    const double there = f.wet ? 1 : std::min(1.0, sums.water_mass / (part * volume * full));
     f.water_old = water ? sums.water_momentum / sums.water_mass : 0;
     b.water_mass = inertia * there * full;
     f.viscous = water && s.constants.viscosity > 0 ? viscous_acceleration(s, d, face) : 0;
@@ -231,8 +265,8 @@ void correct_velocities(State<D>& s, double dt) {
     s.blocks.cells(s.grid, b, true, [&](int face, const Cell<D>&) {
       for (int d = 0; d < D; ++d) {
         FaceFlow& f = s.flow[d][face];
-        const double g = feels_pressure(s, d, face) ? felt_gradient(s, d, face) : 0;
-        if (f.wet) f.water -= f.water_response * g;
+        const double g = gradient_on_grains(s, d, face);
+        if (f.wet || f.soaked > 0) f.water -= f.water_response * g;
         f.soil -= f.soil_response * g;
         f.exchange = dt * f.drag * (f.water - f.soil);
         if (s.soil_walls.closed(d, face) && f.soil * leaving_direction(s, d, face) <= 0) f.soil = 0;
