@@ -112,7 +112,7 @@ void switch_loads(const Scene& scene, const Stage& stage, State<D>& s) {
     if (load.kind == Load::Kind::traction) {
       SurfaceLoad<D>& surface = s.loads[traction++];
       set(surface);
-      if (removed) surface.marker.clear(), surface.area.clear();
+      if (removed) surface.markers.clear();
     } else {
       Plate<D>& rigid = s.plates[plate++];
       set(rigid);

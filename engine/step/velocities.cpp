@@ -81,16 +81,16 @@ template <int D>
 void damp(const State<D>& s, int d, int face, double dt, bool moving_soil, Balance& b, FaceFlow& f) {
   FaceFlow trial = f;
   solve(b, dt, moving_soil, trial);
-  const double alpha = s.constants.damping,
-               g = feels_pressure(s, d, face) ? pressure_gradient(s, d, face) : 0;
+  const double alpha = s.constants.damping;
   if (moving_soil) {
-    const double change = trial.soil - trial.soil_response * g - f.soil_old;
+    const double change = trial.soil - trial.soil_response * gradient_on_grains(s, d, face) - f.soil_old;
     f.soil_inertia = 1 / damped_part(alpha, f.soil_old, change);
     b.soil_momentum += (f.soil_inertia - 1) * b.soil_mass * f.soil_old;
     b.soil_mass *= f.soil_inertia;
   }
   if (b.water_mass > 0) {
-    const double change = trial.water - (f.wet ? trial.water_response * g : 0) - f.water_old;
+    const double g = f.wet ? pressure_gradient(s, d, face) : 0,
+                 change = trial.water - trial.water_response * g - f.water_old;
     f.water_inertia = 1 / damped_part(alpha, f.water_old, change);
     b.water_momentum += (f.water_inertia - 1) * b.water_mass * f.water_old;
     b.water_mass *= f.water_inertia;
@@ -128,14 +128,15 @@ double wet_part(const State<D>& s, int d, int face) {
     return s.cell[from].unknown >= 0 && s.cell[to].unknown < 0 && !s.water_walls.closed(d, between);
   };
   const bool inside = s.cell[face].unknown >= 0 && s.cell[face - step].unknown >= 0;
-  if (inside && !dry(face, face + step, face + step) && !dry(face - step, face - 2 * step, face - step)) return 1;
+  if (inside && !dry(face, face + step, face + step) && !dry(face - step, face - 2 * step, face - step))
+    return 1;
   const Taken t = taken(s, d, face);
   return std::clamp(std::max(t.fill, t.bulk), kLeastWetPart, 1.0);
 }
 
-/// A face between air cells, next to the face at the water surface: what kernels reach there of the soil below
-/// the surface feels the pressure as that face does. Without it a saturated layer drains 1/48 of a cell above
-/// its top. Returns the part of the face's volume that soil and water take; 0 for other faces.
+/// A face between air cells, next to the face at the water surface: what kernels reach there of the soil
+/// below the surface feels the pressure as that face does. Without it a saturated layer drains 1/48 of a cell
+/// above its top. Returns the part of the face's volume that soil and water take; 0 for other faces.
 template <int D>
 double soak(const State<D>& s, int d, int face, FaceFlow& f) {
   const int step = s.grid.stride[d];

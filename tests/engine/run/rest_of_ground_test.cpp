@@ -1,4 +1,5 @@
-// Ground that is loaded by its weight comes to rest with the stress of its weight, and damping brings it there.
+// Ground that is loaded by its weight comes to rest with the stress of its weight, and damping brings it
+// there.
 
 #include <gtest/gtest.h>
 

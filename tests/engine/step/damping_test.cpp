@@ -42,8 +42,8 @@ TEST(Damping, HoldsAtAnyStableStep) {
     }
 }
 
-/// Away from walls a block falls with (1−α) g; the ledger holds what is missing. Drops at a water surface take
-/// their share from it.
+/// Away from walls a block falls with (1−α) g; the ledger holds what is missing. Drops at a water surface
+/// take their share from it.
 TEST(Damping, FallingTakesTheRestOfTheWeight) {
   for (const BodyKind kind : {BodyKind::water, BodyKind::soil, BodyKind::saturated_soil}) {
     const double by_surface = kind == BodyKind::soil ? 1e-6 : 0.1;
