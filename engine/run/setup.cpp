@@ -157,6 +157,7 @@ State<D> make_state(const Scene& scene) {
     s.sums[d].assign(s.grid.count(), {});
     s.image[d].assign(s.grid.count(), {});
     s.flow[d].assign(s.grid.count(), {});
+    s.speeds[d].assign(s.grid.count(), {});
   }
   if (s.constants.kernel == Kernel::linear)
     for (auto& followers : s.follower) followers.assign(s.grid.count(), {});

@@ -73,6 +73,11 @@ struct FaceFlow {
   double flux_response() const { return phi * soil_response + n * water_response; }
 };
 
+/// What points read of a face's velocities, m/s, close together in memory.
+struct alignas(32) FaceSpeeds {
+  double soil_old = 0, soil = 0, water_old = 0, water = 0;
+};
+
 struct CellSums {
   double water = 0, grains = 0, soil_bulk = 0;  ///< m³, at the cell's centre
 };
@@ -234,6 +239,7 @@ struct State {
   std::array<std::vector<FaceImage>, D> image;
   std::array<std::vector<Follower>, D> follower;  ///< linear kernel only
   std::array<std::vector<FaceFlow>, D> flow;
+  std::array<std::vector<FaceSpeeds>, D> speeds;  ///< of `flow`, once it is final
   std::array<std::vector<FixedFace>, D> fixed_face;
   std::vector<CellSums> cell_sums;
   std::vector<CellSums> fixed_cell;

@@ -70,7 +70,7 @@ Vec<D> path(const State<D>& s, const Vec<D>& x, double dt) {
     Vec<D> u{};
     for (int d = 0; d < D; ++d)
       for_faces(s.grid, s.water_walls, kernel, d, [&](int face, double w, double sign, const Vec<D>&) {
-        u[d] += seconds * sign * w * s.flow[d][face].water;
+        u[d] += seconds * sign * w * s.speeds[d][face].water;
       });
     return u;
   };
@@ -91,8 +91,9 @@ void water_from_faces(State<D>& s, std::uint32_t p, double dt, double pic, Total
     double v_old = 0, v_new = 0, carried = 0;
     Vec<D> slope{};
     for_faces(s.grid, s.water_walls, kernel, d, [&](int face, const FaceWeight<D>& weight, double sign) {
-      const FaceFlow& f = s.flow[d][face];
-      const double lift = falls && f.wet > 1 ? f.water - f.water_old - dt * s.constants.fall(d) : 0;
+      const FaceSpeeds& f = s.speeds[d][face];
+      const double lift =
+          falls && s.flow[d][face].wet > 1 ? f.water - f.water_old - dt * s.constants.fall(d) : 0;
       v_old += sign * weight.w * f.water_old;
       v_new += sign * weight.w * (f.water - lift);
       carried += sign * weight.w * lift;
@@ -134,7 +135,7 @@ void soil_from_faces(State<D>& s, std::uint32_t p, double dt, double pic, Totals
     double v_old = 0, v_new = 0;
     Vec<D> slope{};
     for_faces(s.grid, s.soil_walls, kernel, d, [&](int face, const FaceWeight<D>& weight, double sign) {
-      const FaceFlow& f = s.flow[d][face];
+      const FaceSpeeds& f = s.speeds[d][face];
       v_old += sign * weight.w * f.soil_old;
       v_new += sign * weight.w * f.soil;
       for (int j = 0; j < D; ++j) l[d][j] += sign * f.soil * weight.gradient[j];
@@ -183,10 +184,23 @@ void soil_from_faces(State<D>& s, std::uint32_t p, double dt, double pic, Totals
   totals.finite = totals.finite && std::isfinite(speed2) && std::isfinite(strain);
 }
 
+template <int D>
+void publish_speeds(State<D>& s) {
+  s.blocks.all([&](int b) {
+    s.blocks.cells(s.grid, b, true, [&](int i, const Cell<D>&) {
+      for (int d = 0; d < D; ++d) {
+        const FaceFlow& f = s.flow[d][i];
+        s.speeds[d][i] = {f.soil_old, f.soil, f.water_old, f.water};
+      }
+    });
+  });
+}
+
 }  // namespace
 
 template <int D>
 void faces_to_points(State<D>& s, double dt, StepReport<D>& report) {
+  publish_speeds(s);
   const double pic = s.constants.transfer == Transfer::apic ? 1 : 1 - std::exp(-s.constants.pic_rate * dt);
   const Supports<D> supports = support_impulses(s, dt, pic);
   report.impulse_walls = supports.walls;
