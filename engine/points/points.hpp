@@ -74,4 +74,21 @@ void erase_point(Set& set, std::size_t p) {
   });
 }
 
+inline constexpr std::uint32_t kErased = 0xffffffff;
+/// Removes every point p for which gone(p); the others keep their order. Returns the new index of each point
+/// there was, or kErased.
+template <class Set, class Gone>
+std::vector<std::uint32_t> erase_points(Set& set, Gone&& gone) {
+  std::vector<std::uint32_t> place(set.size());
+  std::uint32_t left = 0;
+  for (std::size_t p = 0; p < place.size(); ++p) place[p] = gone(p) ? kErased : left++;
+  for_arrays(set, [&](auto& array) {
+    if (array.empty()) return;
+    for (std::size_t p = 0; p < place.size(); ++p)
+      if (place[p] != kErased) array[place[p]] = array[p];
+    array.resize(left);
+  });
+  return place;
+}
+
 }  // namespace quicksand

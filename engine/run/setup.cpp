@@ -91,6 +91,36 @@ void set_levels(const Scene& scene, const Stage& stage, State<D>& s) {
   }
 }
 
+/// Loads that a stage names act on bodies that are still there.
+template <int D>
+void switch_loads(const Scene& scene, const Stage& stage, State<D>& s) {
+  const auto gone = [&](const std::string& body) {
+    for (std::size_t b = 0; b < s.removed.size(); ++b)
+      if (s.removed[b] && scene.bodies[b].name == body) return true;
+    return false;
+  };
+  std::size_t traction = 0, plate = 0;
+  for (const Load& load : scene.loads) {
+    const bool removed = gone(load.body);
+    const bool named =
+        !stage.loads || std::find(stage.loads->begin(), stage.loads->end(), load.name) != stage.loads->end();
+    const auto set = [&](auto& state) {
+      const bool acts = named && !removed;
+      if (acts && !state.active) state.start = s.time;
+      state.active = acts;
+    };
+    if (load.kind == Load::Kind::traction) {
+      SurfaceLoad<D>& surface = s.loads[traction++];
+      set(surface);
+      if (removed) surface.markers.clear();
+    } else {
+      Plate<D>& rigid = s.plates[plate++];
+      set(rigid);
+      if (!rigid.active) rigid.reaction = rigid.speed = 0;
+    }
+  }
+}
+
 /// Room for the speeds that the drag of some soil of the set asks for.
 template <int D>
 void keep_discharge(const State<D>& s, SoilPoints<D>& set) {
@@ -161,26 +191,15 @@ State<D> make_state(const Scene& scene) {
 
 template <int D>
 void enter_stage(const Scene& scene, const Stage& stage, State<D>& s) {
-  SceneWalls<D> walls = make_walls<D>(scene, s.grid, stage.open_gates);
+  SceneWalls<D> walls = make_walls<D>(scene, s.grid, stage.open_gates, s.removed);
   s.water_walls = std::move(walls.water);
   s.soil_walls = std::move(walls.soil);
   s.volume = kernel_volumes<D>(s.grid, s.water_walls, s.constants.kernel, scene.numerics.points_per_cell);
   if (s.ports.empty()) make_ports(walls.ports, s);
   for (const Port<D>& port : s.ports) s.water_walls.set_port_open(port.d, port.face, port.open);
   set_levels(scene, stage, s);
-  std::size_t traction = 0, plate = 0;
-  for (const Load& load : scene.loads) {
-    const bool acts =
-        !stage.loads || std::find(stage.loads->begin(), stage.loads->end(), load.name) != stage.loads->end();
-    const auto set = [&](auto& state) {
-      if (acts && !state.active) state.start = s.time;
-      state.active = acts;
-    };
-    if (load.kind == Load::Kind::traction)
-      set(s.loads[traction++]);
-    else
-      set(s.plates[plate++]);
-  }
+  s.constants.damping = stage.damping;
+  switch_loads(scene, stage, s);
   mark_plates(s);
 }
 

@@ -60,11 +60,12 @@ void move_plates(State<D>& s, double dt);
 template <int D>
 void correct_velocities(State<D>& s, double dt);
 /// Impulses (N·s) that supports give to the points in this step: walls and fixed grains, with the water's
-/// pressure on them; and the water surface to the drops that it carries. Summed from forces, not from the
-/// change of momentum, so that the ledger's balance is a check.
+/// pressure on them; the water surface to the drops that it carries; and damping. Summed from forces, not
+/// from the change of momentum, so that the ledger's balance is a check.
 template <int D>
 struct Supports {
-  Vec<D> walls{}, surface{};
+  Vec<D> walls{}, surface{}, damping{};
+  double damped = 0;  ///< J, kinetic energy that the motion would have without damping, less what it has
 };
 template <int D>
 Supports<D> support_impulses(const State<D>& s, double dt, double pic);

@@ -48,6 +48,7 @@ void hold_row(State<D>& s, const Plate<D>& plate) {
     f.soil = f.water = plate.speed;
     f.soil_response = f.water_response = 0;
     f.drag = f.fixed_drag = f.viscous = 0;
+    f.soil_inertia = f.water_inertia = 1;  // what a plate holds moves as the plate does, undamped
   }
 }
 

@@ -64,10 +64,11 @@ struct FaceFlow {
   double soaked = 0;
   int soaked_by = -1;
 
-  double drag = 0;        ///< N·s/m⁴ per cell volume, between the phases
-  double fixed_drag = 0;  ///< N·s/m⁴ on the water, of grains that do not move
-  double exchange = 0;    ///< N·s/m³, impulse of the drag on the grains in this step
-  double viscous = 0;     ///< N/kg, force of the viscosity on the water
+  double drag = 0;                             ///< N·s/m⁴ per cell volume, between the phases
+  double fixed_drag = 0;                       ///< N·s/m⁴ on the water, of grains that do not move
+  double exchange = 0;                         ///< N·s/m³, impulse of the drag on the grains in this step
+  double viscous = 0;                          ///< N/kg, force of the viscosity on the water
+  double soil_inertia = 1, water_inertia = 1;  ///< –, what damping multiplies inertia by in this step
 
   double flux() const { return phi * soil + n * water; }
   double flux_response() const { return phi * soil_response + n * water_response; }
@@ -118,6 +119,7 @@ struct Constants {
   double pic_rate = 0;                                       ///< 1/s
   double pressure_tolerance = 1e-6;
   double drift_time = 0;  ///< s; 0: no feedback
+  double damping = 0;     ///< –, of the stage; engine/step/damping.hpp
   Kernel kernel = Kernel::quadratic;
   Transfer transfer = Transfer::flip;
   bool explicit_pressure = false;  ///< pressure advanced from the last one instead of solved for
@@ -220,6 +222,7 @@ struct State {
   SoilPoints<D> soil;   ///< moving grains
   SoilPoints<D> fixed;  ///< grains held in place
   WaterPoints<D> water;
+  std::vector<char> removed;  ///< per body, whether a stage took it away; empty while none did
   BlockList soil_blocks, water_blocks;
   KernelVolumes<D> volume;
   std::vector<SurfaceLoad<D>> loads;

@@ -205,6 +205,8 @@ void faces_to_points(State<D>& s, double dt, StepReport<D>& report) {
   const Supports<D> supports = support_impulses(s, dt, pic);
   report.impulse_walls = supports.walls;
   report.impulse_surface = supports.surface;
+  report.impulse_damping = supports.damping;
+  report.damped = supports.damped;
   const Totals<D> totals = with_scheme(s, [&](auto scheme) {
     using S = decltype(scheme);
     return s.blocks.template sum<Totals<D>>([&](int b) {

@@ -3,6 +3,7 @@
 
 #include <atomic>
 
+#include "engine/step/damping.hpp"
 #include "engine/step/phases.hpp"
 
 namespace quicksand {
@@ -63,6 +64,37 @@ void solve_soil(const Balance& b, double dt, FaceFlow& f) {
   f.soil = b.soil_momentum / b.soil_mass;
   f.soil_response = dt * f.phi / b.soil_mass;
   f.water = f.water_response = 0;
+}
+
+/// v̂ and responses of what is there: water, and grains if they move.
+void solve(const Balance& b, double dt, bool moving_soil, FaceFlow& f) {
+  if (b.water_mass > 0 && moving_soil)
+    solve_pair(b, dt, f);
+  else if (b.water_mass > 0)
+    solve_water(b, dt, f);
+  else if (moving_soil)
+    solve_soil(b, dt, f);
+}
+
+/// Inertia with which each phase is damped, from what it would do in this step under the last pressure.
+template <int D>
+void damp(const State<D>& s, int d, int face, double dt, bool moving_soil, Balance& b, FaceFlow& f) {
+  FaceFlow trial = f;
+  solve(b, dt, moving_soil, trial);
+  const double alpha = s.constants.damping;
+  if (moving_soil) {
+    const double change = trial.soil - trial.soil_response * gradient_on_grains(s, d, face) - f.soil_old;
+    f.soil_inertia = 1 / damped_part(alpha, f.soil_old, change);
+    b.soil_momentum += (f.soil_inertia - 1) * b.soil_mass * f.soil_old;
+    b.soil_mass *= f.soil_inertia;
+  }
+  if (b.water_mass > 0) {
+    const double g = f.wet ? pressure_gradient(s, d, face) : 0,
+                 change = trial.water - trial.water_response * g - f.water_old;
+    f.water_inertia = 1 / damped_part(alpha, f.water_old, change);
+    b.water_momentum += (f.water_inertia - 1) * b.water_mass * f.water_old;
+    b.water_mass *= f.water_inertia;
+  }
 }
 
 /// +1 or −1: the direction in which grains may leave a closed face; 0: neither (walls of no thickness,
@@ -177,22 +209,15 @@ void predict_face(State<D>& s, int d, int face, double dt) {
     // Contact, one-sided: grains stay on the wall while what acts on them, with the last pressure
     // gradient, presses them to it.
     FaceFlow trial = f;
-    if (b.water_mass > 0)
-      solve_pair(b, dt, trial);
-    else
-      solve_soil(b, dt, trial);
+    solve(b, dt, true, trial);
     const double leaving = trial.soil - trial.soil_response * pressure_gradient(s, d, face);
     held = !(leaving * leaving_direction(s, d, face) > 0);
   }
   if (soil_closed) s.soil_walls.set_separated(d, face, soil && !held);
   f.soil_held = held;
   const bool moving_soil = soil && !held;
-  if (b.water_mass > 0 && moving_soil)
-    solve_pair(b, dt, f);
-  else if (b.water_mass > 0)
-    solve_water(b, dt, f);
-  else if (moving_soil)
-    solve_soil(b, dt, f);
+  if (s.constants.damping > 0) damp(s, d, face, dt, moving_soil, b, f);
+  solve(b, dt, moving_soil, f);
   if (!water_open) f.water = f.water_response = 0;
 }
 
