@@ -63,8 +63,8 @@ bool falls_freely(const State<D>& s, const PointKernel<D, Shape>& kernel) {
   return depth < -kFreeHeight;
 }
 
-/// Way of the water at x in dt by the midpoint rule; Euler's way leads out of every bend. `half` is half the way
-/// by the kernel's own velocity, near enough for the middle.
+/// Way of the water at x in dt by the midpoint rule; Euler's way leads out of every bend. `half` is half the
+/// way by the kernel's own velocity, near enough for the middle.
 template <class Shape, int D>
 Vec<D> path(const State<D>& s, int home, const Vec<D>& x, const Vec<D>& half, double dt) {
   Vec<D> middle = x, way{};

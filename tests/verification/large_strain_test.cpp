@@ -1,6 +1,6 @@
 // One-dimensional consolidation at large strain, without weight: K. H. Xie and C. J. Leo, Computers and
-// Geotechnics 31 (2004) 301–314. With k/k0 = ((1+e)/(1+e0))² and constant compressibility m the equation in the
-// coordinate of the start is linear in exp(m u), so that with S = Σ 2/M sin(M z/H) exp(−M² Tv)
+// Geotechnics 31 (2004) 301–314. With k/k0 = ((1+e)/(1+e0))² and constant compressibility m the equation in
+// the coordinate of the start is linear in exp(m u), so that with S = Σ 2/M sin(M z/H) exp(−M² Tv)
 //   u = ln(1 + (exp(m q) − 1) S)/m,   settlement = H (1 − exp(−m q)) (1 − Σ 2/M² exp(−M² Tv)),
 // M = (2i+1)π/2, Tv = k0 t/(γw m H²), z from the drained top at the start.
 
