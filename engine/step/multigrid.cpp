@@ -33,13 +33,7 @@ void Multigrid<D>::build_structure(const Grid<D>& grid, const PressureSystem<D>&
   Level& fine = levels_[0];
   const int n = static_cast<int>(m.cell.size());
   fine.rows.resize(n);
-  for (int r = 0; r < n; ++r) {
-    fine.place.push_back(grid.cell(m.cell[r]));
-    for (int d = 0; d < D; ++d) {
-      fine.rows[r].neighbor[2 * d] = m.lower[d][r] >= 0 ? m.lower[d][r] : n;
-      fine.rows[r].neighbor[2 * d + 1] = m.upper[d][r] >= 0 ? m.upper[d][r] : n;
-    }
-  }
+  for (const int cell : m.cell) fine.place.push_back(grid.cell(cell));
   finish_level(fine);
   while (levels_.back().rows.size() > kFewRows) {
     Level coarse;
@@ -121,14 +115,17 @@ template <int D>
 void Multigrid<D>::build(const Grid<D>& grid, const PressureSystem<D>& m) {
   if (levels_.empty() || m.cell != cells_) build_structure(grid, m);
   Level& fine = levels_[0];
+  const int none = static_cast<int>(fine.rows.size());
   for_chunks(fine.rows.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t r = begin; r < end; ++r) {
       Row& row = fine.rows[r];
       row.diagonal = m.diagonal[r];
       row.inverse = 1 / m.diagonal[r];
-      for (int d = 0; d < D; ++d) {
-        const int below = m.lower[d][r];
-        row.beta[2 * d] = below >= 0 ? -m.coupling[d][below] : 0;
+      for (int d = 0; d < D; ++d) {  // gates part and join the same cells
+        const int lower = m.lower[d][r], upper = m.upper[d][r];
+        row.neighbor[2 * d] = lower >= 0 ? lower : none;
+        row.neighbor[2 * d + 1] = upper >= 0 ? upper : none;
+        row.beta[2 * d] = lower >= 0 ? -m.coupling[d][lower] : 0;
         row.beta[2 * d + 1] = -m.coupling[d][r];
       }
     }

@@ -78,6 +78,24 @@ TEST(Multigrid, HolesAndContrastsAreSolved) {
   EXPECT_LE(iterations<2>(64, wet, layered), 80);
 }
 
+/// Gates that open and shut change the couplings of the same cells.
+TEST(Multigrid, SameCellsWithOtherWalls) {
+  const Grid<2> grid = cube<2>(16);
+  Multigrid<2> multigrid;
+  for (const double gate : {0.0, 1.0, 0.0}) {
+    PressureSystem<2> m = system_on(
+        grid, [](const auto&) { return true; },
+        [&](int d, const Cell<2>& c) { return d == 0 && c[0] == 7 ? gate : 1.0; });
+    if (gate == 0)
+      for (std::size_t r = 0; r < m.cell.size(); ++r)
+        if (grid.cell(m.cell[r])[0] == 7) m.lower[0][m.upper[0][r]] = -1, m.upper[0][r] = -1;
+    EXPECT_LE(conjugate_gradients(grid, m, multigrid, 1e-8).iterations, 20);
+    std::vector<double> image(m.cell.size());
+    multiply(m, m.solution, image);
+    for (std::size_t r = 0; r < image.size(); ++r) EXPECT_NEAR(image[r], m.rhs[r], 2e-8);
+  }
+}
+
 TEST(Multigrid, CycleIsSymmetric) {
   const Grid<2> grid = cube<2>(20);
   const auto wet = [](const Cell<2>& c) { return c[0] + c[1] < 33 && c[0] * c[1] != 30; };
