@@ -9,6 +9,9 @@ namespace quicksand {
 template <int D>
 struct StepReport;
 
+/// Points → the same in the order of their cells, every so many steps.
+template <int D>
+void sort_points(State<D>& s);
 /// Last velocities → `discharge` of the points that keep it, and what depends on it.
 template <int D>
 void follow_discharge(State<D>& s);

@@ -251,6 +251,7 @@ struct State {
   Multigrid<D> multigrid;  ///< of the pressure system
 
   double time = 0;      ///< s
+  long steps = 0;       ///< that were begun
   Vec<D> momentum{};    ///< N·s, Σ m v of all moving points, × inertia
   Vec<D> load_force{};  ///< N, of the surface loads in this step
   Interventions interventions;
