@@ -74,7 +74,11 @@ int leaving_direction(const State<D>& s, int d, int face) {
   return low == high ? 0 : low ? 1 : -1;
 }
 
-/// Part of a wet face's volume that is soil or below the water surface; 1 away from the surface.
+/// Part of a face's volume that lies inside, where a reservoir begins at the face.
+constexpr double kInsidePort = 0.5;
+
+/// Part of a wet face's volume that is soil or below the water surface; 1 away from the surface. At a
+/// reservoir it is the inner half, however unevenly its points lie.
 template <int D>
 double wet_part(const State<D>& s, int d, int face) {
   if (s.cell[face].unknown >= 0 && s.cell[face - s.grid.stride[d]].unknown >= 0) return 1;
@@ -82,7 +86,9 @@ double wet_part(const State<D>& s, int d, int face) {
   const double volume = s.volume.face(d, face);
   const FixedFace fixed = s.fixed.size() ? s.fixed_face[d][face] : FixedFace{};
   const double grains = f.grains / volume + fixed.phi, bulk = f.soil_bulk / volume + fixed.bulk;
-  const double fill = fill_of(f.water_mass / (s.constants.water_density * volume), grains, bulk);
+  const double fill = submerged(s, d, face)
+                          ? kInsidePort
+                          : fill_of(f.water_mass / (s.constants.water_density * volume), grains, bulk);
   return std::clamp(std::max(fill, bulk), kLeastWetPart, 1.0);
 }
 
