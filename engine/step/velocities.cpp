@@ -119,19 +119,24 @@ Taken taken(const State<D>& s, int d, int face) {
   return {bulk, fill_of(f.water_mass / (s.constants.water_density * volume), grains, bulk)};
 }
 
+/// Part of a face's volume that lies inside, where a reservoir begins at the face.
+constexpr double kInsidePort = 0.5;
+
 /// Part of a wet face's volume that is soil or below the water surface; 1 where its kernel, 1½ cells long,
-/// does not reach the surface.
+/// does not reach the surface. At a reservoir it is the inner half, however unevenly its points lie.
 template <int D>
 double wet_part(const State<D>& s, int d, int face) {
   const int step = s.grid.stride[d];
   const auto dry = [&](int from, int to, int between) {
-    return s.cell[from].unknown >= 0 && s.cell[to].unknown < 0 && !s.water_walls.closed(d, between);
+    return s.cell[from].unknown >= 0 && s.cell[to].unknown < 0 && !s.water_walls.closed(d, between) &&
+           !submerged(s, d, between);
   };
   const bool inside = s.cell[face].unknown >= 0 && s.cell[face - step].unknown >= 0;
   if (inside && !dry(face, face + step, face + step) && !dry(face - step, face - 2 * step, face - step))
     return 1;
   const Taken t = taken(s, d, face);
-  return std::clamp(std::max(t.fill, t.bulk), kLeastWetPart, 1.0);
+  const double fill = submerged(s, d, face) ? kInsidePort : t.fill;
+  return std::clamp(std::max(fill, t.bulk), kLeastWetPart, 1.0);
 }
 
 /// A face between air cells, next to the face at the water surface: what kernels reach there of the soil

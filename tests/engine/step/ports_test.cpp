@@ -45,6 +45,28 @@ TEST(Ports, FlowBetweenTwoReservoirsIsDarcys) {
   }
 }
 
+/// Points of free water carry more than the pores' share: they pass a filter, and the port behind it, in
+/// lumps.
+TEST(Ports, AFilterBehindFreeWaterResistsByItsThickness) {
+  Scene s = plane(0.01, 0.1, 0.01, 10);
+  add_body(s, "sand", BodyKind::saturated_soil, {0, 0.06, 0}, {0.01, 0.1, 0});
+  add_body(s, "water", BodyKind::water, {0, 0, 0}, {0.01, 0.06, 0});
+  s.bodies[0].fixed = true;
+  s.soils["sand"].permeability = {.law = PermeabilityLaw::constant, .value = 2e-4};
+  s.water.bulk_modulus.reset();
+  s.numerics.drift_time = 0;
+  const double discharge = 5.6e-3;
+  s.reservoirs = {{"below", along(0, 0, 0.01, 0), 0.2 + discharge / 2e-4 * 0.04},
+                  {"above", along(0, 0.1, 0.01, 0.1), 0.2}};
+  s.output.sections = {{"free", along(0, 0.03, 0.01, 0.03), "flow"}};
+  s.output.frame_interval = 10;
+  s.output.series_interval = 0.02;
+  const auto flow = record(s).results.series("section.free");
+  const auto half = flow.begin() + static_cast<std::ptrdiff_t>(flow.size() / 2);
+  const double mean = std::accumulate(half, flow.end(), 0.0) / static_cast<double>(flow.end() - half);
+  EXPECT_NEAR(mean, discharge * 0.01, 0.003 * discharge * 0.01);
+}
+
 TEST(Ports, EqualHeadsDoNothing) {
   const Recorded r = record(pressed_column(0.25, 0.25, 1));
   EXPECT_LT(r.report.ledger.water_in + r.report.ledger.water_out, 1e-12);
