@@ -106,6 +106,14 @@ bool in_plate(const State<D>& s, int d, int face) {
   if (d != kPlateAxis || s.plate_of.empty() || s.plate_of[face] == 0) return false;
   return s.plates[s.plate_of[face] - 1].touches;
 }
+/// The cell that stands for `cell` in the kernel of a point in cell `home`: where `home` lies under a plate
+/// and nothing but air above it, the one below. `fold_plates` leaves nothing in the other.
+template <int D>
+int under_plates(const State<D>& s, int home, int cell) {
+  if (!in_plate(s, kPlateAxis, cell) || s.cell[cell].unknown >= 0) return cell;
+  const bool above = s.grid.cell(home)[kPlateAxis] >= s.grid.cell(cell)[kPlateAxis];
+  return above ? cell : cell - s.grid.stride[kPlateAxis];
+}
 /// Whether the grains (and open water) of a face are pushed by the pressure: at wet faces, and at walls next
 /// to water, where the gradient is that of still water.
 template <int D>

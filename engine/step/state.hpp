@@ -164,7 +164,7 @@ struct Plate {
   double reaction = 0;                      ///< N, upward, from the plate on soil and water in the last step
   bool touches = true;                      ///< false while it is lifted off the soil
   std::vector<int> row;                     ///< faces of component y in its plane
-  std::vector<std::pair<int, int>> beside;  ///< rough: (component, face) just below the plane
+  std::vector<std::pair<int, int>> beside;  ///< (other component, face) just below the plane
 };
 
 /// A face of the boundary through which water enters and leaves; engine/step/ports.cpp.

@@ -286,7 +286,7 @@ void correct_velocities(State<D>& s, double dt) {
       s.blocks.cells(s.grid, b, true, [&](int face, const Cell<D>&) {
         for (int d = 0; d < D; ++d) {
           FaceFlow& f = s.flow[d][face];
-          if (f.wet || s.water_walls.closed(d, face)) continue;
+          if (f.wet || s.water_walls.closed(d, face) || in_plate(s, d, face)) continue;
           // Hats reach faces at which their weight is zero and its gradient is not.
           if (s.sums[d][face].water_mass <= 0 && s.constants.kernel != Kernel::linear) continue;
           double v;
