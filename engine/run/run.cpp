@@ -54,6 +54,14 @@ class Run {
   }
 
  private:
+  /// Counts its own lifetime as output.
+  struct OutputTime {
+    explicit OutputTime(Run& run) : run_(run) {}
+    ~OutputTime() { run_.output_seconds_ += seconds_since(start_); }
+    Run& run_;
+    Clock::time_point start_ = Clock::now();
+  };
+
   /// False when the run has ended before its time.
   bool run_stage(std::size_t index) {
     const Stage& stage = scene_.stages[index];
@@ -139,11 +147,13 @@ class Run {
   }
 
   void write_sample() {
+    const OutputTime timed(*this);
     ledger_.measure(state_, last_);
     sink_.sample(state_.time, watch_.sample(state_, last_, ledger_.ledger()));
     last_sample_time_ = state_.time;
   }
   void write_frame() {
+    const OutputTime timed(*this);
     sink_.frame(make_frame(scene_, state_, report_.frames, stage_name_));
     ++report_.frames;
     last_frame_time_ = state_.time;
@@ -182,6 +192,7 @@ class Run {
     for (const auto& [name, seconds] : bound_seconds_) report_.steps_bound_by.push_back({name, seconds});
     for (std::size_t i = 0; i < kPhaseNames.size(); ++i)
       report_.phases.push_back({kPhaseNames[i], state_.phase_seconds[i]});
+    report_.phases.push_back({"output", output_seconds_});
   }
 
   /// Step limits of the soil before the first step tells them.
@@ -229,6 +240,7 @@ class Run {
   RunReport report_;
   std::string stage_name_;
   double end_time_ = 0, last_frame_time_ = 0, last_sample_time_ = 0, first_step_ = 0, iterations_ = 0;
+  double output_seconds_ = 0;  ///< wall time
   std::map<std::string, double> bound_seconds_;
   Clock::time_point start_ = Clock::now();
 };

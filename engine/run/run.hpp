@@ -126,8 +126,8 @@ struct Failure {
 enum class RunStatus { succeeded, failed, canceled };
 
 struct PhaseTime {
-  std::string name;  ///< phase of the step: "to grid", "pressure", …
-  double seconds = 0;
+  std::string name;    ///< phase of the step: "to grid", "pressure", …; "output": frames and samples
+  double seconds = 0;  ///< wall time
 };
 
 struct RunReport {

@@ -4,7 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
+#include <map>
+#include <thread>
 
 #include "tests/engine/small_scene.hpp"
 #include "tests/verification/recorder.hpp"
@@ -214,6 +217,28 @@ TEST(Run, ReportAddsUp) {
   EXPECT_EQ(r.report.point_steps, points * static_cast<double>(r.report.steps));
   EXPECT_EQ(r.report.ledger.water_mass, r.report.ledger.water_mass_initial);
   EXPECT_EQ(r.report.ledger.solid_mass, r.report.ledger.solid_mass_initial);
+}
+
+TEST(Run, PhasesTellWhereTheTimeWent) {
+  using std::chrono::milliseconds;
+  struct Slow : Counter {
+    void frame(const Frame& f) override { std::this_thread::sleep_for(milliseconds(20)), Counter::frame(f); }
+    void sample(double time, const std::vector<double>& values) override {
+      std::this_thread::sleep_for(milliseconds(5)), Counter::sample(time, values);
+    }
+  } sink;
+  RunMonitor monitor;
+  const RunReport report = run(bed(0.01), sink, monitor);
+  ASSERT_EQ(report.status, RunStatus::succeeded);
+  double all = 0;
+  std::map<std::string, double> seconds;
+  for (const PhaseTime& phase : report.phases) seconds[phase.name] = phase.seconds, all += phase.seconds;
+  EXPECT_EQ(seconds.size(), 6u);
+  for (const auto& [name, s] : seconds) EXPECT_GT(s, 0) << name;
+  const double slept = 0.02 * static_cast<double>(report.frames) + 0.005 * static_cast<double>(sink.samples);
+  EXPECT_GE(seconds["output"], slept);
+  EXPECT_LE(all, report.wall_seconds);
+  EXPECT_LE(all - seconds["output"], report.wall_seconds - slept);  // no output in the step's phases
 }
 
 TEST(Run, ThreadsNeverChangeTheResult) {

@@ -1,0 +1,49 @@
+#pragma once
+// What a state holds, by part: the bytes of its arrays.
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "engine/step/state.hpp"
+
+namespace quicksand::bench {
+
+using Allocated = std::vector<std::pair<std::string, double>>;  ///< part, bytes
+
+template <class T>
+double bytes_of(const std::vector<T>& v) {
+  return static_cast<double>(v.capacity() * sizeof(T));
+}
+template <class T, std::size_t N>
+double bytes_of(const std::array<std::vector<T>, N>& arrays) {
+  double sum = 0;
+  for (const auto& v : arrays) sum += bytes_of(v);
+  return sum;
+}
+template <class... Arrays>
+double bytes_of_all(const Arrays&... arrays) {
+  return (0.0 + ... + bytes_of(arrays));
+}
+template <class Set>
+double bytes_of_points(const Set& set) {
+  double sum = 0;
+  for_arrays(const_cast<Set&>(set), [&](const auto& v) { sum += bytes_of(v); });
+  return sum;
+}
+
+template <int D>
+Allocated allocated(const State<D>& s) {
+  const PressureSystem<D>& m = s.pressure_system;
+  return {
+      {"soil points", bytes_of_points(s.soil) + bytes_of_points(s.fixed)},
+      {"water points", bytes_of_points(s.water)},
+      {"order",
+       bytes_of_all(s.soil_blocks.order, s.soil_blocks.begin, s.water_blocks.order, s.water_blocks.begin)},
+      {"faces", bytes_of_all(s.sums, s.image, s.follower, s.flow, s.fixed_face, s.port_of)},
+      {"cells", bytes_of_all(s.cell_sums, s.fixed_cell, s.cell, s.pressure, s.pressure_old)},
+      {"pressure system", bytes_of_all(m.cell, m.diagonal, m.rhs, m.solution, m.upper, m.lower, m.coupling)},
+  };
+}
+
+}  // namespace quicksand::bench

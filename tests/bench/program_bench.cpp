@@ -1,0 +1,93 @@
+// What the general program adds to the bare steps of a scene: `run` with a sink that drops everything,
+// against a loop over the same steps. Each from the same start.
+//
+//   program/<scene>/points:<n>/{steps,run}
+
+#include <benchmark/benchmark.h>
+#include <tbb/task_arena.h>
+
+#include <chrono>
+
+#include "engine/run/run.hpp"
+#include "tests/bench/scenes.hpp"
+#include "tests/bench/workload.hpp"
+
+namespace quicksand::bench {
+namespace {
+
+constexpr double kPointSteps = 4e6;
+
+struct Nowhere : ResultSink {
+  void begin(const std::vector<SeriesInfo>&) override {}
+  void frame(const Frame&) override {}
+  void sample(double, const std::vector<double>&) override {}
+};
+
+/// Ends a run after so many steps.
+struct StopAfter : RunMonitor {
+  explicit StopAfter(long n) : steps(n) {}
+  void progress(const Progress& p) override { done = p.step; }
+  bool cancelled() override { return done >= steps; }
+  long steps, done = 0;
+};
+
+void report(benchmark::State& state, double seconds, double point_steps, double points, double bytes) {
+  state.SetIterationTime(seconds);
+  state.counters["points"] = points;
+  state.counters["ns_per_point_step"] = 1e9 * seconds / point_steps;
+  state.counters["peak_bytes_per_point"] = bytes / points;
+}
+
+void bare_steps(benchmark::State& state, const Scene& scene, long steps) {
+  const double before = resident_bytes();
+  forget_peak();
+  for (auto _ : state) {
+    tbb::task_arena arena(1);
+    arena.execute([&] {
+      const auto work = start(scene);
+      const auto begin = std::chrono::steady_clock::now();
+      for (long i = 0; i < steps; ++i) work->step();
+      const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
+      report(state, took.count(), work->points() * static_cast<double>(steps), work->points(),
+             peak_bytes() - before);
+    });
+  }
+}
+
+void whole_run(benchmark::State& state, Scene scene, long steps) {
+  const double before = resident_bytes();
+  forget_peak();
+  for (auto _ : state) {
+    Nowhere sink;
+    StopAfter monitor(steps);
+    const RunReport done = run(scene, sink, monitor, {.threads = 1});
+    double seconds = done.wall_seconds;
+    for (const PhaseTime& phase : done.phases)
+      if (phase.name == "output") seconds -= phase.seconds;
+    report(state, seconds, done.point_steps, done.point_steps / static_cast<double>(done.steps),
+           peak_bytes() - before);
+  }
+}
+
+const bool registered = [] {
+  for (const auto& [kind, points] : {std::pair{Kind::column, 1e5}, std::pair{Kind::dam, 1e5}}) {
+    const long steps = static_cast<long>(kPointSteps / points);
+    const std::string name =
+        "program/" + scene_name(kind, 2) + "/points:" + std::to_string(static_cast<long>(points));
+    const auto add = [&](const std::string& way, auto&& measure) {
+      benchmark::RegisterBenchmark((name + way).c_str(),
+                                   [=, kind = kind, points = points](benchmark::State& state) {
+                                     measure(state, make_scene(kind, {2, points, 1}), steps);
+                                   })
+          ->Iterations(1)
+          ->UseManualTime()
+          ->Unit(benchmark::kMillisecond);
+    };
+    add("/steps", bare_steps);
+    add("/run", whole_run);
+  }
+  return true;
+}();
+
+}  // namespace
+}  // namespace quicksand::bench

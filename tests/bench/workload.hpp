@@ -1,0 +1,90 @@
+#pragma once
+// A scene in motion, advanced by the steps that a run would take.
+
+#include <array>
+#include <map>
+#include <memory>
+#include <string>
+
+#include "engine/plan/step_bounds.hpp"
+#include "engine/run/setup.hpp"
+#include "engine/step/step.hpp"
+#include "tests/bench/allocated.hpp"
+#include "tests/bench/memory.hpp"
+
+namespace quicksand::bench {
+
+using PhaseSeconds = std::array<double, kPhaseNames.size()>;
+
+class Workload {
+ public:
+  virtual ~Workload() = default;
+  /// Iterations of the pressure solve.
+  virtual int step() = 0;
+  virtual double points() const = 0;
+  virtual const PhaseSeconds& phase_seconds() const = 0;
+  virtual Allocated allocated() const = 0;
+
+  /// What came to be resident with the state and its first steps, bytes.
+  double resident = 0;
+};
+
+template <int D>
+class WorkloadIn final : public Workload {
+ public:
+  explicit WorkloadIn(const Scene& scene) : scene_(scene), state_(make_state<D>(scene)) {
+    last_ = advance(state_, kFirstStep);
+  }
+
+  int step() override {
+    const StepSituation now{last_.soil_limit, last_.max_speed, state_.water.size() > 0, last_.fast_wave_limit,
+                            state_.constants.inertia};
+    last_ = advance(state_, choose_step(scene_, now).seconds);
+    return last_.pressure.iterations;
+  }
+  double points() const override { return static_cast<double>(state_.soil.size() + state_.water.size()); }
+  const PhaseSeconds& phase_seconds() const override { return state_.phase_seconds; }
+  Allocated allocated() const override { return quicksand::bench::allocated(state_); }
+
+ private:
+  /// s, only to have the soil's own limit of the next step measured.
+  static constexpr double kFirstStep = 1e-7;
+
+  Scene scene_;
+  State<D> state_;
+  StepReport<D> last_;
+};
+
+/// Steps before anything is measured: buffers have their sizes, the pressure its history.
+inline constexpr int kWarmUpSteps = 6;
+
+/// A scene after its first step.
+inline std::unique_ptr<Workload> start(const Scene& scene) {
+  if (scene.domain.dimension == Dimension::space) return std::make_unique<WorkloadIn<3>>(scene);
+  return std::make_unique<WorkloadIn<2>>(scene);
+}
+
+/// A scene after some steps, with the memory that they took.
+inline std::unique_ptr<Workload> warm_up(const Scene& scene) {
+  const double before = resident_bytes();
+  auto work = start(scene);
+  resident_bytes();  // gives back what seeding left
+  forget_peak();
+  for (int i = 0; i < kWarmUpSteps; ++i) work->step();
+  work->resident = peak_bytes() - before;
+  return work;
+}
+
+/// The workload of a name, kept for later repetitions and thread counts until another group asks.
+template <class MakeScene>
+Workload& kept_workload(const std::string& group, const std::string& name, MakeScene&& make_scene) {
+  static std::string of;
+  static std::map<std::string, std::unique_ptr<Workload>> kept;
+  if (of != group) kept.clear();
+  of = group;
+  auto& work = kept[name];
+  if (!work) work = warm_up(make_scene());
+  return *work;
+}
+
+}  // namespace quicksand::bench
