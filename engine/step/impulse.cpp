@@ -23,7 +23,11 @@ double soil_reaction(const State<D>& s, int d, int face, double dt) {
     const double drag = f.exchange * s.volume.face(d, face);
     return mirrored + s.constants.inertia * sums.soil_mass * (change - dt * s.constants.fall(d)) - drag;
   }
-  const double pressure = feels_pressure(s, d, face) ? -sums.grains * felt_gradient(s, d, face) : 0;
+  double pressure = 0;
+  if (feels_pressure(s, d, face) && f.phi > 0) {
+    const double still = s.constants.water_density * s.constants.gravity[d];
+    pressure = -sums.grains * (still + f.pushed / f.phi * (felt_gradient(s, d, face) - still));
+  }
   return mirrored + dt * (sums.soil_force + pressure);
 }
 

@@ -56,8 +56,9 @@ struct FaceFlow {
   double water_old = 0, water = 0;               ///< m/s
   double soil_response = 0, water_response = 0;  ///< m/s per Pa/m
   double phi = 0, n = 1;                         ///< –, moving grains; room for water
-  std::uint8_t wet = 0;                          ///< 1: a side has pressure; 2, 3: extrapolated from such
-  bool soil_held = false;                        ///< grains are in contact with a wall here
+  double pushed = 0;       ///< –, of the grains, by what the gradient is beyond still water's
+  std::uint8_t wet = 0;    ///< 1: a side has pressure; 2, 3: extrapolated from such
+  bool soil_held = false;  ///< grains are in contact with a wall here
 
   double drag = 0;        ///< N·s/m⁴ per cell volume, between the phases
   double fixed_drag = 0;  ///< N·s/m⁴ on the water, of grains that do not move
