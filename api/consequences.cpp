@@ -51,7 +51,6 @@ constexpr Doubt doubts[] = {
     {"/materials", "/bodies", true},  // is it used, is there water
     {"/initial", "/bodies", true},
     {"/numerics", "/bodies", true},
-    {"/stages/*/damping", "/bodies", true},
     {"/stages/*/quasi_static", "/bodies", true},
     {"/numerics/quasi_static_transits", "/stages", true},
     {"/materials", "/reservoirs"},  // is there water

@@ -106,7 +106,7 @@ void check_load(const Place& place, const Load& load) {
 }
 
 void check_stage(const Place& place, const Stage& stage, bool soil) {
-  if (!soil) idle(place, {"damping", "quasi_static"}, "in a scene without soil");
+  if (!soil) idle(place, {"quasi_static"}, "in a scene without soil");
   if (stage.heads.empty() && !place["heads"].broken()) idle(place, {"heads_ramp"}, "without heads");
 }
 

@@ -123,8 +123,8 @@ std::vector<std::pair<int, int>> faces_on(const Grid<D>& grid, const Segment& li
 }
 
 template <int D>
-SceneWalls<D> make_walls(const Scene& scene, const Grid<D>& grid,
-                         const std::vector<std::string>& open_gates) {
+SceneWalls<D> make_walls(const Scene& scene, const Grid<D>& grid, const std::vector<std::string>& open_gates,
+                         const std::vector<char>& removed) {
   Walls<D> walls(grid);
   close_domain(scene, grid, walls);
   for (const Wall& wall : scene.walls) {
@@ -146,8 +146,9 @@ SceneWalls<D> make_walls(const Scene& scene, const Grid<D>& grid,
     both.water.make_port(port.d, port.face);
     if (port.reservoir < 0) both.soil.make_port(port.d, port.face);
   }
-  for (const Body& body : scene.bodies) {
-    if (!body.fixed) continue;
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    const Body& body = scene.bodies[b];
+    if (!body.fixed || (!removed.empty() && removed[b])) continue;
     const auto inside = cells_in(grid, body.region);
     close_outline(grid, inside, both.soil, false);
     for (int i = 0; i < grid.count(); ++i)
@@ -162,7 +163,9 @@ template Grid<2> make_grid<2>(const Scene&);
 template Grid<3> make_grid<3>(const Scene&);
 template std::vector<std::pair<int, int>> faces_on<2>(const Grid<2>&, const Segment&);
 template std::vector<std::pair<int, int>> faces_on<3>(const Grid<3>&, const Segment&);
-template SceneWalls<2> make_walls<2>(const Scene&, const Grid<2>&, const std::vector<std::string>&);
-template SceneWalls<3> make_walls<3>(const Scene&, const Grid<3>&, const std::vector<std::string>&);
+template SceneWalls<2> make_walls<2>(const Scene&, const Grid<2>&, const std::vector<std::string>&,
+                                     const std::vector<char>&);
+template SceneWalls<3> make_walls<3>(const Scene&, const Grid<3>&, const std::vector<std::string>&,
+                                     const std::vector<char>&);
 
 }  // namespace quicksand

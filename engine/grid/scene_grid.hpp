@@ -26,9 +26,10 @@ struct SceneWalls {
   Walls<D> soil;   ///< the same without the reservoirs' ports, and the outside of fixed soil bodies
   std::vector<PortFace> ports;
 };
-/// All gates but `open_gates` are closed.
+/// All gates but `open_gates` are closed; bodies that `removed` marks (empty: none) are not there.
 template <int D>
-SceneWalls<D> make_walls(const Scene& scene, const Grid<D>& grid, const std::vector<std::string>& open_gates);
+SceneWalls<D> make_walls(const Scene& scene, const Grid<D>& grid, const std::vector<std::string>& open_gates,
+                         const std::vector<char>& removed = {});
 
 /// (component, face) of every face on a segment.
 template <int D>

@@ -47,22 +47,55 @@ Vec<D> affine_weight(const FaceWeight<D>& f, double inverse_h) {
   return a;
 }
 
-/// Calls f(face, weight, sign, gradient) for the faces of component d around a point. `sign` goes with
-/// momenta, forces and velocities. f may take a `FaceWeight` in place of weight and gradient: f(face, weight,
-/// sign).
+namespace stencil {
+
+/// f(FaceWeight) or f(weight, gradient), whichever it takes.
+template <int D, class F>
+inline constexpr bool takes_arm = std::is_invocable_v<F, int, const FaceWeight<D>&, double>;
+template <int D, class F>
+inline void call(F& f, int face, const FaceWeight<D>& weight, double sign) {
+  if constexpr (takes_arm<D, F>)
+    f(face, weight, sign);
+  else
+    f(face, weight.w, sign, weight.gradient);
+}
+
+/// Away from walls: row by row along x, whose faces lie one after the other in memory.
 template <int D, class Shape, class F>
-inline void for_faces(const Grid<D>& grid, const Walls<D>& walls, const PointKernel<D, Shape>& k, int d,
-                      F&& f) {
-  constexpr bool with_arm = std::is_invocable_v<F, int, const FaceWeight<D>&, double>;
+inline void open_faces(const Grid<D>& grid, const PointKernel<D, Shape>& k, int d, F& f) {
+  constexpr int n = Shape::nodes;
+  const auto& along = k.factor(d, 0);
+  for (int row = 0; row < power(n, D - 1); ++row) {
+    FaceWeight<D> weight;
+    double outer = 1;
+    Vec<D> outer_gradient;
+    outer_gradient.fill(grid.inverse_h);
+    int face = k.home + along.first * grid.stride[0];
+    for (int a = 1, rest = row; a < D; ++a, rest /= n) {
+      const auto& s = k.factor(d, a);
+      const int j = rest % n;
+      face += (s.first + j) * grid.stride[a];
+      outer *= s.w[j];
+      for (int b = 0; b < D; ++b) outer_gradient[b] *= b == a ? s.dw[j] : s.w[j];
+      if constexpr (takes_arm<D, F>) weight.arm[a] = (s.first + j - s.at) * grid.h;
+    }
+#pragma GCC unroll 3
+    for (int i = 0; i < n; ++i) {
+      weight.w = outer * along.w[i];
+      weight.gradient[0] = outer_gradient[0] * along.dw[i];
+      for (int b = 1; b < D; ++b) weight.gradient[b] = outer_gradient[b] * along.w[i];
+      if constexpr (takes_arm<D, F>) weight.arm[0] = (along.first + i - along.at) * grid.h;
+      call<D>(f, face + i, weight, 1.0);
+    }
+  }
+}
+
+/// Beside walls.
+template <int D, class Shape, class F>
+inline void folded_faces(const Grid<D>& grid, const Walls<D>& walls, const PointKernel<D, Shape>& k, int d,
+                         const typename Walls<D>::CellFolds& folds, F& f) {
   constexpr int n = power(Shape::nodes, D);
   std::array<int, D> position;
-  const auto* folds = walls.folds(k.home);
-  const auto call = [&](int face, const FaceWeight<D>& weight, double sign) {
-    if constexpr (with_arm)
-      f(face, weight, sign);
-    else
-      f(face, weight.w, sign, weight.gradient);
-  };
   for (int i = 0; i < n; ++i) {
     int rest = i;
     FaceWeight<D> weight;
@@ -74,39 +107,51 @@ inline void for_faces(const Grid<D>& grid, const Walls<D>& walls, const PointKer
       position[a] = s.first + j;
       weight.w *= s.w[j];
       for (int b = 0; b < D; ++b) weight.gradient[b] *= b == a ? s.dw[j] : s.w[j];
-      if constexpr (with_arm) weight.arm[a] = (position[a] - s.at) * grid.h;
+      if constexpr (takes_arm<D, F>) weight.arm[a] = (position[a] - s.at) * grid.h;
     }
-    if (!folds) {
-      int face = k.home;
-      for (int a = 0; a < D; ++a) face += position[a] * grid.stride[a];
-      call(face, weight, 1.0);
-    } else {
-      int slot = position[d] + 1;
-      for (int a = 0, scale = 4; a < D; ++a)
-        if (a != d) slot += (position[a] + 1) * scale, scale *= 3;
-      const Fold& fold = folds->face[d][slot];
-      double sign = fold.tangential;
-      if (fold.normal_wall >= 0 && !walls.separated(d, fold.normal_wall)) sign = -sign;
-      call(fold.target, weight, sign);
-    }
+    int slot = position[d] + 1;
+    for (int a = 0, scale = 4; a < D; ++a)
+      if (a != d) slot += (position[a] + 1) * scale, scale *= 3;
+    const Fold& fold = folds.face[d][slot];
+    double sign = fold.tangential;
+    if (fold.normal_wall >= 0 && !walls.separated(d, fold.normal_wall)) sign = -sign;
+    call<D>(f, fold.target, weight, sign);
   }
+}
+
+}  // namespace stencil
+
+/// Calls f(face, weight, sign, gradient) for the faces of component d around a point. `sign` goes with
+/// momenta, forces and velocities. f may take a `FaceWeight` in place of weight and gradient: f(face, weight,
+/// sign).
+template <int D, class Shape, class F>
+inline void for_faces(const Grid<D>& grid, const Walls<D>& walls, const PointKernel<D, Shape>& k, int d,
+                      F&& f) {
+  if (const auto* folds = walls.folds(k.home))
+    stencil::folded_faces(grid, walls, k, d, *folds, f);
+  else
+    stencil::open_faces(grid, k, d, f);
 }
 
 /// Calls f(cell, weight) for the cell centres around a point.
 template <int D, class Shape, class F>
 inline void for_centers(const Grid<D>& grid, const Walls<D>& walls, const PointKernel<D, Shape>& k, F&& f) {
-  constexpr int n = power(Shape::nodes, D);
+  constexpr int n = Shape::nodes;
   const auto* folds = walls.folds(k.home);
-  for (int i = 0; i < n; ++i) {
-    double w = 1;
+  for (int row = 0; row < power(n, D - 1); ++row) {
+    double outer = 1;
     int cell = k.home, slot = 0;
-    for (int a = 0, rest = i, scale = 1; a < D; ++a, rest /= Shape::nodes, scale *= 3) {
-      const int j = rest % Shape::nodes, position = k.center[a].first + j;
-      w *= k.center[a].w[j];
+    for (int a = 1, rest = row, scale = 3; a < D; ++a, rest /= n, scale *= 3) {
+      const int position = k.center[a].first + rest % n;
+      outer *= k.center[a].w[rest % n];
       cell += position * grid.stride[a];
       slot += (position + 1) * scale;
     }
-    f(folds ? folds->center[slot] : cell, w);
+#pragma GCC unroll 3
+    for (int i = 0; i < n; ++i) {
+      const int position = k.center[0].first + i;
+      f(folds ? folds->center[slot + position + 1] : cell + position, outer * k.center[0].w[i]);
+    }
   }
 }
 

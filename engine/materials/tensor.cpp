@@ -31,9 +31,15 @@ Stress<D> to_stress(const Matrix& m) {
 /// Closed form for the plane: z is principal, the other two are a rotation in the plane.
 Principal principal_plane(const Stress<2>& s) {
   const double mean = 0.5 * (s[0] + s[1]), half = 0.5 * (s[0] - s[1]);
-  const double radius = std::hypot(half, s[3]);
-  const double angle = radius > 0 ? 0.5 * std::atan2(s[3], half) : 0;
-  const double c = std::cos(angle), sn = std::sin(angle);
+  const double radius = std::sqrt(half * half + s[3] * s[3]);
+  // cos and sin of half the angle of (half, xy), the larger one first so that nothing cancels.
+  double c = 1, sn = 0;
+  if (radius > 0) {
+    const double larger = std::sqrt(0.5 * (1 + std::abs(half) / radius)),
+                 other = s[3] / (2 * radius * larger);
+    c = half >= 0 ? larger : std::abs(other);
+    sn = half >= 0 ? other : std::copysign(larger, s[3]);
+  }
   Principal p;
   std::array<int, 3> column;  // where the in-plane major, in-plane minor and z directions go
   if (s[2] >= mean + radius)
@@ -75,11 +81,20 @@ Gradient<D> midpoint_gradient(const Gradient<D>& l, double dt) {
 
 template <int D>
 Stress<D> rotated(const Stress<D>& stress, const Gradient<D>& l, double dt) {
-  Matrix spin = Matrix::Zero();
-  for (int i = 0; i < D; ++i)
-    for (int j = 0; j < D; ++j) spin(i, j) = 0.5 * (l[i][j] - l[j][i]) * dt;
-  const Matrix one = Matrix::Identity(), rotation = (one - 0.5 * spin).inverse() * (one + 0.5 * spin);
-  return to_stress<D>(rotation * to_matrix<D>(stress) * rotation.transpose());
+  if constexpr (D == 2) {
+    const double w = 0.25 * (l[1][0] - l[0][1]) * dt;  // tangent of half the angle
+    const double c = (1 - w * w) / (1 + w * w), sn = 2 * w / (1 + w * w);
+    const double mean = 0.5 * (stress[0] + stress[1]), half = 0.5 * (stress[0] - stress[1]);
+    const double cc = c * c - sn * sn, ss = 2 * c * sn;
+    const double turned = cc * half - ss * stress[3];
+    return {mean + turned, mean - turned, stress[2], ss * half + cc * stress[3]};
+  } else {
+    Matrix spin = Matrix::Zero();
+    for (int i = 0; i < D; ++i)
+      for (int j = 0; j < D; ++j) spin(i, j) = 0.5 * (l[i][j] - l[j][i]) * dt;
+    const Matrix one = Matrix::Identity(), rotation = (one - 0.5 * spin).inverse() * (one + 0.5 * spin);
+    return to_stress<D>(rotation * to_matrix<D>(stress) * rotation.transpose());
+  }
 }
 
 template <int D>

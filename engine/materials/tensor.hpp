@@ -39,6 +39,17 @@ double contracted(const std::array<double, N>& t) {
 template <int D>
 Gradient<D> midpoint_gradient(const Gradient<D>& l, double dt);
 
+/// Volume after a step over that before, det(1 + Δt L).
+template <int D>
+double volume_ratio(const Gradient<D>& l, double dt) {
+  const auto f = [&](int i, int j) { return (i == j ? 1 : 0) + dt * l[i][j]; };
+  const auto minor = [&](int i, int j) { return f(0, i) * f(1, j) - f(0, j) * f(1, i); };
+  if constexpr (D == 2)
+    return minor(0, 1);
+  else
+    return f(2, 2) * minor(0, 1) - f(2, 1) * minor(0, 2) + f(2, 0) * minor(1, 2);
+}
+
 /// Strain of a step of dt seconds; in the plane the third strain grows at the rate `hoop`, 1/s.
 template <int D>
 Strain<D> strain_increment(const Gradient<D>& l, double dt, double hoop);

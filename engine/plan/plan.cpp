@@ -23,9 +23,9 @@ constexpr double kPointStepsPerSecond = 3e6;
 /// The same step in space, where a point touches 81 faces instead of 18: measured 4 times as long.
 constexpr double kCostInSpace = 4;
 
-/// Whether the top of a body lies open to the air anywhere: no other wet body above its surface, looked at in
-/// every column of cells.
-bool reaches_air(const Scene& scene, const Body& body, double h) {
+/// Whether the top of a body lies open to the air anywhere in a stage: no other wet body above its surface,
+/// looked at in every column of cells.
+bool reaches_air(const Scene& scene, std::size_t stage, const Body& body, double h) {
   const Bounds bounds = bounding_box(body.region);
   const int dimensions = scene.domain.dimension == Dimension::space ? 3 : 2;
   // Polygons and discs are extruded over the whole depth; a plane has one slice.
@@ -40,7 +40,8 @@ bool reaches_air(const Scene& scene, const Body& body, double h) {
       if (column.empty()) continue;
       const Vec3 above{x, column.back()[1] + 0.25 * h, z};
       const bool covered = std::any_of(scene.bodies.begin(), scene.bodies.end(), [&](const Body& other) {
-        return other.kind != BodyKind::soil && contains(other.region, above, dimensions);
+        return other.kind != BodyKind::soil && present(scene, stage, other.name) &&
+               contains(other.region, above, dimensions);
       });
       if (!covered) return true;
     }
@@ -48,17 +49,17 @@ bool reaches_air(const Scene& scene, const Body& body, double h) {
   return false;
 }
 
-double initial_soil_limit(const Scene& scene, double h, double inertia) {
+double initial_soil_limit(const Scene& scene, std::size_t stage, double h, double inertia) {
   double limit = std::numeric_limits<double>::infinity();
   for (const Body& body : scene.bodies) {
-    if (body.kind == BodyKind::water || body.fixed) continue;
+    if (body.kind == BodyKind::water || body.fixed || !present(scene, stage, body.name)) continue;
     const Soil& soil = scene.soils.at(body.soil);
     const double compliance = scene.water.bulk_modulus ? 1 / *scene.water.bulk_modulus : 0;
     const SoilMaterial material = SoilMaterial::from(soil, scene.water);
     const StepLimit limits(material, scene.water.density, compliance, bounding_edge(scene.numerics.kernel, h),
                            inertia);
     const double n = soil.porosity, modulus = initial_modulus(scene, body, material);
-    const bool confined = body.kind == BodyKind::saturated_soil && !reaches_air(scene, body, h);
+    const bool confined = body.kind == BodyKind::saturated_soil && !reaches_air(scene, stage, body, h);
     const double saturated = limits.saturated(n, modulus);
     limit = std::min(limit, confined ? saturated : std::min(limits.dry(n, modulus), saturated));
   }
@@ -66,11 +67,11 @@ double initial_soil_limit(const Scene& scene, double h, double inertia) {
 }
 
 /// StepLimit::fast_wave of the saturated soil; infinite without, or if the pressure is solved for.
-double initial_fast_wave_limit(const Scene& scene, double h, double inertia) {
+double initial_fast_wave_limit(const Scene& scene, std::size_t stage, double h, double inertia) {
   double limit = std::numeric_limits<double>::infinity();
   if (scene.numerics.pressure == PressureScheme::implicit) return limit;
   for (const Body& body : scene.bodies) {
-    if (body.kind != BodyKind::saturated_soil || body.fixed) continue;
+    if (body.kind != BodyKind::saturated_soil || body.fixed || !present(scene, stage, body.name)) continue;
     const Soil& soil = scene.soils.at(body.soil);
     const SoilMaterial material = SoilMaterial::from(soil, scene.water);
     const StepLimit limits(material, scene.water.density, 1 / scene.water.bulk_modulus.value(),
@@ -119,10 +120,12 @@ void explain(const Scene& scene, Plan& plan) {
   if (plan.has_water && !scene.water.bulk_modulus) plan.reasons.push_back("Water is incompressible.");
 }
 
-StepSituation situation(const Scene& scene, const Plan& plan, double speed, double inertia) {
-  const double none = std::numeric_limits<double>::infinity(), h = plan.cell_size;
-  return {initial_soil_limit(scene, h, inertia), speed, plan.has_water,
-          plan.has_water ? initial_fast_wave_limit(scene, h, inertia) : none, inertia};
+/// At the start of a stage, as far as it is known before the run.
+StepSituation situation(const Scene& scene, std::size_t stage, const Plan& plan, double speed) {
+  const double none = std::numeric_limits<double>::infinity(), h = plan.cell_size,
+               inertia = slow_process(scene, stage).inertia;
+  return {initial_soil_limit(scene, stage, h, inertia), speed, plan.has_water,
+          plan.has_water ? initial_fast_wave_limit(scene, stage, h, inertia) : none, inertia};
 }
 
 }  // namespace
@@ -149,7 +152,7 @@ Plan make_plan(const Scene& scene) {
                                 std::abs(body.rotation_rate) * radius);
   }
   for (std::size_t k = 0; k < scene.stages.size(); ++k) {
-    const StepSituation start = situation(scene, plan, speed, slow_process(scene, k).inertia);
+    const StepSituation start = situation(scene, k, plan, speed);
     const StepBound bound = choose_step(scene, start);
     if (k == 0) {
       plan.bounds = step_bounds(scene, start);

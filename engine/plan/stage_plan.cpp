@@ -67,8 +67,8 @@ void say_method(const Scene& scene, std::size_t index, Sentences& does) {
   if (stage.damping > 0)
     does.push_back(
         "Damping " + text(stage.damping) +
-        ": that share of the out-of-balance force is taken away; what rests is right, the way there "
-        "is not.");
+        ": that share of the out-of-balance force is turned against the motion; what rests is right, the "
+        "way there is not.");
   if (stage.quasi_static)
     does.push_back("Quasi-static: inertia, never weight, is scaled so that a wave crosses the soil " +
                    text(scene.numerics.quasi_static_transits) +
@@ -95,7 +95,9 @@ std::vector<StagePlan> plan_stages(const Scene& scene) {
   for (std::size_t k = 0; k < scene.stages.size(); ++k) {
     const Stage& stage = scene.stages[k];
     StagePlan plan{stage.name, time, time + stage.duration, {}};
-    if (!stage.remove_bodies.empty()) plan.does.push_back("Removes: " + listed(stage.remove_bodies) + ".");
+    if (!stage.remove_bodies.empty())
+      plan.does.push_back("Removes: " + listed(stage.remove_bodies) +
+                          "; grains and water leave from wherever they are by then.");
     say_gates(scene, stage, plan.does);
     say_heads(scene, k, plan.does);
     say_loads(scene, k, plan.does);

@@ -21,6 +21,8 @@ struct PointSet {
   std::vector<Vec<D>> start;  ///< m, position at seeding
   std::vector<double> mass;   ///< kg
   std::vector<std::int32_t> body;
+  std::vector<std::uint32_t> id;  ///< in the order in which points were made; what frames are written in
+  std::uint32_t next_id = 0;
   /// 1/s, gradient of the velocity that the affine transfer carries, [component][axis]; empty otherwise
   std::vector<std::array<Vec<D>, D>> affine;
   bool carries_gradient = false;  ///< whether `affine` is kept
@@ -32,6 +34,7 @@ struct PointSet {
     start.push_back(at);
     mass.push_back(m);
     body.push_back(body_index);
+    id.push_back(next_id++);
     if (carries_gradient) affine.push_back({});
   }
 };
@@ -55,11 +58,11 @@ struct SoilPoints : PointSet<D> {
 /// Calls f(array) for every array of a set.
 template <int D, class F>
 void for_arrays(WaterPoints<D>& set, F&& f) {
-  f(set.x), f(set.v), f(set.start), f(set.mass), f(set.body), f(set.affine);
+  f(set.x), f(set.v), f(set.start), f(set.mass), f(set.body), f(set.id), f(set.affine);
 }
 template <int D, class F>
 void for_arrays(SoilPoints<D>& set, F&& f) {
-  f(set.x), f(set.v), f(set.start), f(set.mass), f(set.body), f(set.affine);
+  f(set.x), f(set.v), f(set.start), f(set.mass), f(set.body), f(set.id), f(set.affine);
   f(set.porosity), f(set.stress), f(set.plastic_strain), f(set.preconsolidation), f(set.discharge),
       f(set.soil);
 }
@@ -72,6 +75,23 @@ void erase_point(Set& set, std::size_t p) {
     array[p] = array.back();
     array.pop_back();
   });
+}
+
+inline constexpr std::uint32_t kErased = 0xffffffff;
+/// Removes every point p for which gone(p); the others keep their order. Returns the new index of each point
+/// there was, or kErased.
+template <class Set, class Gone>
+std::vector<std::uint32_t> erase_points(Set& set, Gone&& gone) {
+  std::vector<std::uint32_t> place(set.size());
+  std::uint32_t left = 0;
+  for (std::size_t p = 0; p < place.size(); ++p) place[p] = gone(p) ? kErased : left++;
+  for_arrays(set, [&](auto& array) {
+    if (array.empty()) return;
+    for (std::size_t p = 0; p < place.size(); ++p)
+      if (place[p] != kErased) array[place[p]] = array[p];
+    array.resize(left);
+  });
+  return place;
 }
 
 }  // namespace quicksand

@@ -1,6 +1,7 @@
 #include "engine/run/frame.hpp"
 
 #include <algorithm>
+#include <numeric>
 
 #include "engine/run/sampling.hpp"
 
@@ -12,6 +13,16 @@ struct Builder {
   const Scene& scene;
   const State<D>& s;
   Frame frame;
+  std::vector<std::uint32_t> soil = by_id(s.soil), fixed = by_id(s.fixed), water = by_id(s.water);
+
+  template <class Set>
+  static std::vector<std::uint32_t> by_id(const Set& set) {
+    std::vector<std::uint32_t> order(set.size());
+    std::iota(order.begin(), order.end(), 0u);
+    std::sort(order.begin(), order.end(),
+              [&](std::uint32_t p, std::uint32_t q) { return set.id[p] < set.id[q]; });
+    return order;
+  }
 
   bool wanted(const std::string& name) const {
     const auto& fields = scene.output.fields;
@@ -25,22 +36,22 @@ struct Builder {
     FrameField field{name, unit, components, {}};
     field.values.assign(frame.points() * components, 0.0f);
     float* out = field.values.data();
-    const auto each = [&](const auto& set) {
-      for (std::size_t p = 0; p < set.size(); ++p, out += components) value(set, p, out);
+    const auto each = [&](const auto& set, const std::vector<std::uint32_t>& order) {
+      for (const std::size_t p : order) value(set, p, out), out += components;
     };
-    each(s.soil), each(s.fixed), each(s.water);
+    each(s.soil, soil), each(s.fixed, fixed), each(s.water, water);
     frame.fields.push_back(std::move(field));
   }
 
   void places() {
-    const auto each = [&](const auto& set, std::uint8_t phase) {
-      for (std::size_t p = 0; p < set.size(); ++p) {
+    const auto each = [&](const auto& set, const std::vector<std::uint32_t>& order, std::uint8_t phase) {
+      for (const std::size_t p : order) {
         for (int d = 0; d < 3; ++d) frame.position.push_back(d < D ? set.x[p][d] : 0);
         frame.phase.push_back(phase);
         frame.body.push_back(set.body[p]);
       }
     };
-    each(s.soil, 0), each(s.fixed, 0), each(s.water, 1);
+    each(s.soil, soil, 0), each(s.fixed, fixed, 0), each(s.water, water, 1);
   }
 };
 

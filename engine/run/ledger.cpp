@@ -47,6 +47,7 @@ void LedgerKeeper<D>::add(const State<D>& s, const StepReport<D>& step) {
   l.water_in += step.exchange.water_in;
   l.water_out += step.exchange.water_out;
   l.soil_out += step.exchange.soil_out;
+  l.energy_damped += step.damped;
   const double moving = step.moving_mass;
   double residual = 0, driving = 0;
   // About an axis what points radially has no resultant: the momentum upwards is balanced alone.
@@ -58,9 +59,11 @@ void LedgerKeeper<D>::add(const State<D>& s, const StepReport<D>& step) {
     l.impulse_loads[d] += step.impulse_loads[d];
     l.impulse_surface[d] += step.impulse_surface[d];
     l.impulse_flow[d] += step.exchange.momentum[d];
+    l.impulse_damping[d] += step.impulse_damping[d];
     l.momentum_change[d] = step.momentum[d] - start_momentum_[d];
     const double open = l.momentum_change[d] - l.impulse_gravity[d] - l.impulse_walls[d] -
-                        l.impulse_surface[d] - l.impulse_loads[d] - l.impulse_flow[d] - l.impulse_stages[d];
+                        l.impulse_surface[d] - l.impulse_loads[d] - l.impulse_flow[d] - l.impulse_stages[d] -
+                        l.impulse_damping[d] - l.impulse_removed[d];
     residual += open * open;
   }
   driving_impulse_ += std::sqrt(driving);
@@ -69,7 +72,12 @@ void LedgerKeeper<D>::add(const State<D>& s, const StepReport<D>& step) {
 
 template <int D>
 void LedgerKeeper<D>::add(const StageChange<D>& change) {
-  for (int d = 0; d < D; ++d) ledger_.impulse_stages[d] += change.impulse[d];
+  ledger_.water_removed += change.removed.water;
+  ledger_.soil_removed += change.removed.soil;
+  for (int d = 0; d < D; ++d) {
+    ledger_.impulse_stages[d] += change.impulse[d];
+    ledger_.impulse_removed[d] -= change.removed.momentum[d];
+  }
 }
 
 template <int D>
@@ -81,11 +89,11 @@ void LedgerKeeper<D>::measure(const State<D>& s, const StepReport<D>& step) {
   l.solid_mass = total(s.soil.mass) + total(s.fixed.mass);
   l.water_volume = water_volume(s);
   l.energy_potential = potential(s);
-  if (l.water_volume_initial > 0)
-    l.water_volume_drift_max =
-        std::max(l.water_volume_drift_max, std::abs(l.water_volume - l.water_volume_initial -
-                                                    (l.water_in - l.water_out) / s.constants.water_density) /
-                                               l.water_volume_initial);
+  if (l.water_volume_initial <= 0) return;
+  const double due =
+      l.water_volume_initial + (l.water_in - l.water_out - l.water_removed) / s.constants.water_density;
+  l.water_volume_drift_max =
+      std::max(l.water_volume_drift_max, std::abs(l.water_volume - due) / l.water_volume_initial);
 }
 
 template class LedgerKeeper<2>;

@@ -82,8 +82,13 @@ class Run {
 
   void begin_stage(std::size_t index) {
     const double inertia = state_.constants.inertia;
-    ledger_.add(quicksand::begin_stage(scene_, index, state_));
-    if (state_.constants.inertia != inertia) {
+    const StageChange<D> change = quicksand::begin_stage(scene_, index, state_);
+    ledger_.add(change);
+    if (change.removed.anything) {
+      last_ = {};
+      measure_motion(state_, last_);
+    }
+    if (change.removed.anything || state_.constants.inertia != inertia) {
       set_limits();
       first_step_ = 0;
     }
@@ -100,6 +105,7 @@ class Run {
       return fail(unstable_step(scene_, state_, *wave));
     last_ = advance(state_, until_event(chosen.seconds, stage_end));
     ++report_.steps;
+    report_.point_steps += static_cast<double>(state_.soil.size() + state_.water.size());
     report_.time_step_min = report_.steps == 1 ? last_.dt : std::min(report_.time_step_min, last_.dt);
     report_.time_step_max = std::max(report_.time_step_max, last_.dt);
     bound_seconds_[chosen.name] += last_.dt;
@@ -172,8 +178,6 @@ class Run {
     report_.quasi_static = inertia_.reports();
     report_.sim_time = state_.time;
     report_.wall_seconds = seconds_since(start_);
-    report_.point_steps =
-        static_cast<double>(report_.steps) * static_cast<double>(state_.soil.size() + state_.water.size());
     report_.pressure_iterations_mean = report_.steps ? iterations_ / static_cast<double>(report_.steps) : 0;
     for (const auto& [name, seconds] : bound_seconds_) report_.steps_bound_by.push_back({name, seconds});
     for (std::size_t i = 0; i < kPhaseNames.size(); ++i)

@@ -20,7 +20,8 @@ struct FrameField {
   std::vector<float> values;
 };
 
-/// State of all points at one time. Point order is arbitrary but reproducible.
+/// State of all points at one time: moving grains, fixed grains, water, each in the order in which they were made
+/// (seeded, then let in), so that a point keeps its place as long as none before it leaves.
 struct Frame {
   std::size_t index = 0;
   double time = 0;  ///< s
@@ -75,15 +76,19 @@ struct Ledger {
   double solid_mass_initial = 0, solid_mass = 0;      ///< kg
   double water_volume_initial = 0, water_volume = 0;  ///< m³, room filled by water below its surface
   double water_in = 0, water_out = 0, soil_out = 0;   ///< kg, through reservoirs and open sides
-  double water_volume_drift_max = 0;                  ///< largest |V − V0 − (in − out)/ρw| / V0
+  double water_removed = 0, soil_removed = 0;         ///< kg, of bodies that stages removed
+  double water_volume_drift_max = 0;        ///< largest |V − V0 − (in − out − removed)/ρw| / V0
   std::array<double, 3> momentum_change{};  ///< N·s, Σ m v now less at the start; m × inertia if scaled
   std::array<double, 3> impulse_gravity{}, impulse_walls{}, impulse_loads{};  ///< N·s
   std::array<double, 3> impulse_surface{};  ///< N·s, to drops that the water surface carries along
   std::array<double, 3> impulse_flow{};     ///< N·s, momentum of what came in less what left
   std::array<double, 3> impulse_stages{};   ///< N·s, given where a stage begins: inertia scaled back
+  std::array<double, 3> impulse_damping{};  ///< N·s, of damping
+  std::array<double, 3> impulse_removed{};  ///< N·s, momentum of removed bodies, negative
   double momentum_residual = 0;  ///< |change − Σ impulses| / (∫ |weight, loads| dt + Σ |m v| at the start)
   double energy_kinetic = 0, energy_potential = 0, energy_strain = 0;  ///< J
-  long clipped_points = 0;  ///< positions put back in front of a wall
+  double energy_damped = 0;  ///< J, kinetic energy that damping has taken
+  long clipped_points = 0;   ///< positions put back in front of a wall
   long clamped_values = 0;
   long deleted_points = 0;
   long cut_steps = 0;  ///< steps repeated with a smaller time step

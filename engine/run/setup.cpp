@@ -1,11 +1,11 @@
 #include "engine/run/setup.hpp"
 
 #include <cmath>
-#include <map>
 
 #include "engine/grid/scene_grid.hpp"
 #include "engine/points/seeding.hpp"
 #include "engine/run/initial_state.hpp"
+#include "engine/run/surface_load.hpp"
 #include "engine/step/phases.hpp"
 
 namespace quicksand {
@@ -31,33 +31,6 @@ Constants<D> make_constants(const Scene& scene, const Grid<D>& grid) {
                                bounding_edge(c.kernel, grid.h));
   }
   return c;
-}
-
-/// Markers along one side of a body, as close as its points: the outermost soil points of each row across the
-/// side, moved out by half their spacing.
-template <int D>
-SurfaceLoad<D> make_load(const Scene& scene, const Load& load, const State<D>& s) {
-  const double spacing = s.grid.h / scene.numerics.points_per_cell;
-  const int axis = static_cast<int>(load.side) / 2, out = static_cast<int>(load.side) % 2 ? 1 : -1;
-  std::map<std::array<long, D>, Vec<D>> outermost;  // by row of seeding places
-  for (std::size_t p = 0; p < s.soil.size(); ++p) {
-    if (scene.bodies[s.soil.body[p]].name != load.body) continue;
-    std::array<long, D> row{};
-    for (int d = 0; d < D; ++d)
-      if (d != axis) row[d] = static_cast<long>(std::floor((s.soil.x[p][d] - s.grid.origin[d]) / spacing));
-    Vec<D>& x = outermost.try_emplace(row, s.soil.x[p]).first->second;
-    if (out * (s.soil.x[p][axis] - x[axis]) > 0) x = s.soil.x[p];
-  }
-  SurfaceLoad<D> result;
-  const double area = D == 2 ? spacing : spacing * spacing;
-  for (auto& [row, x] : outermost) {
-    x[axis] += 0.5 * out * spacing;
-    result.marker.push_back(x);
-    result.area.push_back(area * s.grid.radius(x));
-  }
-  for (int d = 0; d < D; ++d) result.traction[d] = load.traction[d];
-  result.ramp = load.ramp;
-  return result;
 }
 
 template <int D>
@@ -118,6 +91,36 @@ void set_levels(const Scene& scene, const Stage& stage, State<D>& s) {
   }
 }
 
+/// Loads that a stage names act on bodies that are still there.
+template <int D>
+void switch_loads(const Scene& scene, const Stage& stage, State<D>& s) {
+  const auto gone = [&](const std::string& body) {
+    for (std::size_t b = 0; b < s.removed.size(); ++b)
+      if (s.removed[b] && scene.bodies[b].name == body) return true;
+    return false;
+  };
+  std::size_t traction = 0, plate = 0;
+  for (const Load& load : scene.loads) {
+    const bool removed = gone(load.body);
+    const bool named =
+        !stage.loads || std::find(stage.loads->begin(), stage.loads->end(), load.name) != stage.loads->end();
+    const auto set = [&](auto& state) {
+      const bool acts = named && !removed;
+      if (acts && !state.active) state.start = s.time;
+      state.active = acts;
+    };
+    if (load.kind == Load::Kind::traction) {
+      SurfaceLoad<D>& surface = s.loads[traction++];
+      set(surface);
+      if (removed) surface.markers.clear();
+    } else {
+      Plate<D>& rigid = s.plates[plate++];
+      set(rigid);
+      if (!rigid.active) rigid.reaction = rigid.speed = 0;
+    }
+  }
+}
+
 /// Room for the speeds that the drag of some soil of the set asks for.
 template <int D>
 void keep_discharge(const State<D>& s, SoilPoints<D>& set) {
@@ -154,6 +157,7 @@ State<D> make_state(const Scene& scene) {
     s.sums[d].assign(s.grid.count(), {});
     s.image[d].assign(s.grid.count(), {});
     s.flow[d].assign(s.grid.count(), {});
+    s.speeds[d].assign(s.grid.count(), {});
   }
   if (s.constants.kernel == Kernel::linear)
     for (auto& followers : s.follower) followers.assign(s.grid.count(), {});
@@ -187,26 +191,15 @@ State<D> make_state(const Scene& scene) {
 
 template <int D>
 void enter_stage(const Scene& scene, const Stage& stage, State<D>& s) {
-  SceneWalls<D> walls = make_walls<D>(scene, s.grid, stage.open_gates);
+  SceneWalls<D> walls = make_walls<D>(scene, s.grid, stage.open_gates, s.removed);
   s.water_walls = std::move(walls.water);
   s.soil_walls = std::move(walls.soil);
   s.volume = kernel_volumes<D>(s.grid, s.water_walls, s.constants.kernel, scene.numerics.points_per_cell);
   if (s.ports.empty()) make_ports(walls.ports, s);
   for (const Port<D>& port : s.ports) s.water_walls.set_port_open(port.d, port.face, port.open);
   set_levels(scene, stage, s);
-  std::size_t traction = 0, plate = 0;
-  for (const Load& load : scene.loads) {
-    const bool acts =
-        !stage.loads || std::find(stage.loads->begin(), stage.loads->end(), load.name) != stage.loads->end();
-    const auto set = [&](auto& state) {
-      if (acts && !state.active) state.start = s.time;
-      state.active = acts;
-    };
-    if (load.kind == Load::Kind::traction)
-      set(s.loads[traction++]);
-    else
-      set(s.plates[plate++]);
-  }
+  s.constants.damping = stage.damping;
+  switch_loads(scene, stage, s);
   mark_plates(s);
 }
 

@@ -8,7 +8,7 @@ namespace quicksand {
 template <int D>
 State<D> make_state(const Scene& scene);
 
-/// Opens and closes gates and switches loads for a stage.
+/// Opens and closes gates, switches loads, and sets levels and damping for a stage.
 template <int D>
 void enter_stage(const Scene& scene, const Stage& stage, State<D>& state);
 

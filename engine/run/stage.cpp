@@ -41,7 +41,9 @@ void scale_inertia(double inertia, State<D>& s, StageChange<D>& change) {
 template <int D>
 StageChange<D> begin_stage(const Scene& scene, std::size_t index, State<D>& s) {
   StageChange<D> change;
+  change.removed = remove_bodies(scene, scene.stages[index], s);
   enter_stage(scene, scene.stages[index], s);
+  if (change.removed.anything) look_again(s);
   scale_inertia(slow_process(scene, index).inertia, s, change);
   return change;
 }

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "engine/plan/quasi_static.hpp"
+#include "engine/run/removal.hpp"
 #include "engine/run/run.hpp"
 #include "engine/step/step.hpp"
 
@@ -13,13 +14,14 @@ namespace quicksand {
 /// What the beginning of a stage did to the state other than by the equations.
 template <int D>
 struct StageChange {
-  Vec<D> impulse{};  ///< N·s, change of momentum
+  Vec<D> impulse{};    ///< N·s, change of momentum by scaled inertia
+  Removed<D> removed;  ///< with bodies
 };
 
-/// Boundaries (`enter_stage`) and inertia of stage `index`. Where inertia grows, velocities fall so that
-/// momentum stays: motion left over from before would else carry energy that nothing put in. Where it falls
-/// back, velocities stay, as a slow process goes on at its pace; the momentum that is lost is the change's
-/// impulse.
+/// Bodies (`remove_bodies`), boundaries (`enter_stage`) and inertia of stage `index`. Where inertia grows,
+/// velocities fall so that momentum stays: motion left over from before would else carry energy that nothing
+/// put in. Where it falls back, velocities stay, as a slow process goes on at its pace; the momentum that is
+/// lost is the change's impulse.
 template <int D>
 StageChange<D> begin_stage(const Scene& scene, std::size_t index, State<D>& state);
 

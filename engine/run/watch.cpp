@@ -41,14 +41,11 @@ Vec<D> up(const Vec<D>& gravity) {
   return u;
 }
 
-struct Rise {
-  double mean = 0, largest = 0;  ///< m: mean upward, by mass, largest |displacement|
-};
-
+/// Of the points that a body has left; `last` once it has none.
 template <int D>
-Rise rise_of(const State<D>& s, int body) {
+BodyRise rise_of(const State<D>& s, int body, const BodyRise& last) {
   const Vec<D> u = up<D>(s.constants.gravity);
-  Rise r;
+  BodyRise r;
   double mass = 0;
   for (std::size_t p = 0; p < s.soil.size(); ++p) {
     if (s.soil.body[p] != body) continue;
@@ -62,8 +59,8 @@ Rise rise_of(const State<D>& s, int body) {
     r.largest = std::max(r.largest, std::sqrt(square));
     mass += s.soil.mass[p];
   }
-  if (mass > 0) r.mean /= mass;
-  return r;
+  r.mean /= mass;
+  return mass > 0 ? r : last;
 }
 
 struct Quantity {
@@ -102,7 +99,12 @@ Watch<D>::Watch(const Scene& scene) : scene_(scene) {
   for (std::size_t b = 0; b < scene.bodies.size(); ++b)
     if (scene.bodies[b].kind != BodyKind::water && !scene.bodies[b].fixed)
       moving_soil_.push_back(static_cast<int>(b));
-  for (const Stage& stage : scene.stages) quasi_static_ = quasi_static_ || stage.quasi_static;
+  rise_.resize(moving_soil_.size());
+  for (const Stage& stage : scene.stages) {
+    quasi_static_ = quasi_static_ || stage.quasi_static;
+    damps_ = damps_ || stage.damping > 0;
+    removes_ = removes_ || !stage.remove_bodies.empty();
+  }
   if (!scene.output.heave) return;
   HeaveReport report;
   for (const Body& body : scene.bodies)
@@ -151,6 +153,11 @@ std::vector<SeriesInfo> Watch<D>::info() const {
     all.push_back({"ledger.soil_out", "kg", 1});
     all.push_back({"ledger.impulse_flow", "N·s", 3});
   }
+  if (removes_) {
+    all.push_back({"ledger.water_removed", "kg", 1});
+    all.push_back({"ledger.soil_removed", "kg", 1});
+    all.push_back({"ledger.impulse_removed", "N·s", 3});
+  }
   all.push_back({"ledger.energy", "J", 1});
   all.push_back({"ledger.energy_kinetic", "J", 1});
   all.push_back({"ledger.energy_potential", "J", 1});
@@ -161,6 +168,10 @@ std::vector<SeriesInfo> Watch<D>::info() const {
   all.push_back({"ledger.impulse_surface", "N·s", 3});
   all.push_back({"ledger.impulse_loads", "N·s", 3});
   all.push_back({"ledger.impulse_stages", "N·s", 3});
+  if (damps_) {
+    all.push_back({"ledger.impulse_damping", "N·s", 3});
+    all.push_back({"ledger.energy_damped", "J", 1});
+  }
   all.push_back({"ledger.clipped_points", "1", 1});
   all.push_back({"ledger.clamped_values", "1", 1});
   all.push_back({"ledger.cut_steps", "1", 1});
@@ -182,10 +193,9 @@ std::vector<double> Watch<D>::sample(const State<D>& s, const StepReport<D>& ste
   for (const Plate<D>& plate : s.plates) out.insert(out.end(), {plate.sunk, plate.reaction});
   for (const Section& section : scene_.output.sections) out.push_back(flow_through(s, section.line));
   for (const ReservoirState& r : s.reservoirs) out.insert(out.end(), {r.level(s.time), r.inflow});
-  for (int b : moving_soil_) {
-    const Rise r = rise_of(s, b);
-    out.push_back(r.mean);
-    out.push_back(r.largest);
+  for (std::size_t k = 0; k < moving_soil_.size(); ++k) {
+    rise_[k] = rise_of(s, moving_soil_[k], rise_[k]);
+    out.insert(out.end(), {rise_[k].mean, rise_[k].largest});
   }
   const double energy = l.energy_kinetic + l.energy_potential + l.energy_strain;
   out.insert(out.end(), {l.water_volume, l.water_mass, l.solid_mass});
@@ -193,11 +203,19 @@ std::vector<double> Watch<D>::sample(const State<D>& s, const StepReport<D>& ste
     out.insert(out.end(), {l.water_in, l.water_out, l.soil_out});
     out.insert(out.end(), l.impulse_flow.begin(), l.impulse_flow.end());
   }
+  if (removes_) {
+    out.insert(out.end(), {l.water_removed, l.soil_removed});
+    out.insert(out.end(), l.impulse_removed.begin(), l.impulse_removed.end());
+  }
   out.insert(out.end(), {energy, l.energy_kinetic, l.energy_potential, l.energy_strain});
   for (int d = 0; d < 3; ++d) out.push_back(d < D ? step.momentum[d] : 0);
   for (const auto* impulse :
        {&l.impulse_gravity, &l.impulse_walls, &l.impulse_surface, &l.impulse_loads, &l.impulse_stages})
     out.insert(out.end(), impulse->begin(), impulse->end());
+  if (damps_) {
+    out.insert(out.end(), l.impulse_damping.begin(), l.impulse_damping.end());
+    out.push_back(l.energy_damped);
+  }
   out.insert(out.end(), {static_cast<double>(l.clipped_points), static_cast<double>(l.clamped_values),
                          static_cast<double>(l.cut_steps), step.dt,
                          static_cast<double>(step.pressure.iterations), step.max_speed, step.max_soil_speed});
@@ -205,7 +223,7 @@ std::vector<double> Watch<D>::sample(const State<D>& s, const StepReport<D>& ste
     out.push_back(s.constants.inertia);
     out.push_back(inertia_ratio(step.kinetic, step.strain));
   }
-  sample_rise(s);
+  sample_rise(s.time);
   return out;
 }
 
@@ -227,18 +245,18 @@ void Watch<D>::track(const State<D>& s) {
 }
 
 template <int D>
-void Watch<D>::sample_rise(const State<D>& s) {
+void Watch<D>::sample_rise(double time) {
   if (heave_.empty()) return;
   HeaveReport& report = heave_.front();
-  for (int b : moving_soil_) {
-    if (scene_.bodies[b].name != scene_.output.heave->body) continue;
-    const Rise r = rise_of(s, b);
+  for (std::size_t k = 0; k < moving_soil_.size(); ++k) {
+    if (scene_.bodies[moving_soil_[k]].name != scene_.output.heave->body) continue;
+    const BodyRise& r = rise_[k];
     report.final_rise = r.mean;
     report.max_rise = std::max(report.max_rise, r.mean);
     report.max_point_displacement = std::max(report.max_point_displacement, r.largest);
     if (report.moved || r.mean <= scene_.output.heave->threshold) continue;
     report.moved = true;
-    report.time = s.time;
+    report.time = time;
   }
 }
 

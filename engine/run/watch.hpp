@@ -27,6 +27,11 @@ class LedgerKeeper {
   double driving_impulse_ = 0;  ///< N·s, of weight and loads, and the momentum at the start
 };
 
+/// How far a body has moved; once it is removed or has left, how far it had.
+struct BodyRise {
+  double mean = 0, largest = 0;  ///< m: mean upward, by mass, largest |displacement|
+};
+
 /// Samples all series of a scene; `info` and `sample` agree in order.
 template <int D>
 class Watch {
@@ -39,13 +44,16 @@ class Watch {
   const std::vector<HeaveReport>& heave() const { return heave_; }
 
  private:
-  void sample_rise(const State<D>& state);
+  void sample_rise(double time);
   double head_of(const State<D>& state, const std::string& probe) const;
   const Scene& scene_;
   std::vector<int> moving_soil_;  ///< bodies
+  std::vector<BodyRise> rise_;    ///< of these
   std::vector<HeaveReport> heave_;
   bool ports_ = false;         ///< water can enter or leave
   bool quasi_static_ = false;  ///< some stage is
+  bool damps_ = false;         ///< some stage does
+  bool removes_ = false;       ///< some stage takes bodies away
   double probe_distance_ = 0;  ///< m, along gravity, between the probes of the heave watch
 };
 

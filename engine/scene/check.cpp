@@ -27,20 +27,8 @@ std::string there_is_no(const std::string& what, const std::string& name,
   return names.size() > most ? words + " and " + std::to_string(names.size() - most) + " more" : words;
 }
 
-void check_supported(const Scene& scene, Faults& faults) {
-  const auto refuse = [&](bool used, const std::string& pointer, const std::string& what) {
-    if (used) faults.push_back({pointer, what + " is not supported yet"});
-  };
-  for (std::size_t k = 0; k < scene.stages.size(); ++k) {
-    const Stage& stage = scene.stages[k];
-    refuse(!stage.remove_bodies.empty(), at_index("stages", k, "/remove_bodies"), "removing bodies");
-    refuse(stage.damping > 0, at_index("stages", k, "/damping"), "damping");
-  }
-}
-
 std::vector<Fault> check(const Scene& scene) {
   Faults faults;
-  check_supported(scene, faults);
   check_names(scene, faults);
   check_materials(scene, faults);
   check_stages(scene, faults);

@@ -6,8 +6,8 @@
 namespace quicksand {
 
 /// Everything about the scene that a schema cannot see: names that do not exist, bodies that overlap or
-/// lie in walls, walls off the cell faces, stages that do nothing, and what is not supported yet.
-/// Empty when the scene can be run. All faults at once.
+/// lie in walls, walls off the cell faces, stages that do nothing. Empty when the scene can be run. All
+/// faults at once.
 std::vector<Fault> check(const Scene& scene);
 
 }  // namespace quicksand

@@ -12,8 +12,6 @@ namespace quicksand {
 
 using Faults = std::vector<Fault>;
 
-/// What the vocabulary holds but the engine does not compute yet.
-void check_supported(const Scene& scene, Faults& faults);
 /// Names given twice.
 void check_names(const Scene& scene, Faults& faults);
 /// Soils, gravity and initial state: values that contradict each other, or that nothing uses.

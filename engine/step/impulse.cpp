@@ -23,12 +23,10 @@ double soil_reaction(const State<D>& s, int d, int face, double dt) {
     const double drag = f.exchange * s.volume.face(d, face);
     return mirrored + s.constants.inertia * sums.soil_mass * (change - dt * s.constants.fall(d)) - drag;
   }
-  double pressure = 0;
-  if (feels_pressure(s, d, face) && f.phi > 0) {
-    const double still = s.constants.water_density * s.constants.gravity[d];
-    pressure = -sums.grains * (still + f.pushed / f.phi * (felt_gradient(s, d, face) - still));
-  }
-  return mirrored + dt * (sums.soil_force + pressure);
+  double gradient = gradient_on_grains(s, d, face);
+  if (f.pushed != f.phi)
+    gradient += (f.pushed / f.phi - 1) * (gradient - s.constants.water_density * s.constants.gravity[d]);
+  return mirrored + dt * (sums.soil_force - sums.grains * gradient);
 }
 
 template <int D>
@@ -55,6 +53,29 @@ double surface_support(const State<D>& s, int d, int face, double dt) {
          f.exchange * s.volume.face(d, face);
 }
 
+template <int D>
+struct Damped {
+  Vec<D> impulse{};
+  double energy = 0;
+};
+/// Of a phase that damping gave the inertia μ M: its forces alone would have changed v by μ Δv.
+template <int D>
+void add_damping(int d, double mass, double inertia, double before, double after, Damped<D>& sum) {
+  const double impulse = (1 - inertia) * mass * (after - before);
+  sum.impulse[d] += impulse;
+  const double alone = before + inertia * (after - before);
+  sum.energy -= 0.5 * impulse * (alone + after);
+}
+template <int D>
+void add_damping(const State<D>& s, int d, int face, Damped<D>& sum) {
+  const FaceSums& sums = s.sums[d][face];
+  const FaceFlow& f = s.flow[d][face];
+  const bool stopped = s.soil_walls.closed(d, face) && f.soil == 0;
+  if (!stopped) add_damping(d, s.constants.inertia * sums.soil_mass, f.soil_inertia, f.soil_old, f.soil, sum);
+  if (f.wet < 2)
+    add_damping(d, s.constants.inertia * sums.water_mass, f.water_inertia, f.water_old, f.water, sum);
+}
+
 /// The leader's sums hold a follower's mass as if it had the leader's old velocity.
 template <int D>
 double momentum_beside_leader(const State<D>& s, int d, int face) {
@@ -65,9 +86,13 @@ double momentum_beside_leader(const State<D>& s, int d, int face) {
 template <int D>
 struct Sum {
   Vec<D> reaction{}, surface{}, grid{};  ///< grid: Σ M v of the old grid velocities
+  Damped<D> damped;
   Sum& operator+=(const Sum& o) {
-    for (int d = 0; d < D; ++d)
+    for (int d = 0; d < D; ++d) {
       reaction[d] += o.reaction[d], surface[d] += o.surface[d], grid[d] += o.grid[d];
+      damped.impulse[d] += o.damped.impulse[d];
+    }
+    damped.energy += o.damped.energy;
     return *this;
   }
 };
@@ -86,6 +111,7 @@ Supports<D> support_impulses(const State<D>& s, double dt, double pic) {
         const FaceFlow& f = s.flow[d][face];
         part.reaction[d] += soil_reaction(s, d, face, dt) + water_reaction(s, d, face, dt);
         part.surface[d] += surface_support(s, d, face, dt);
+        if (s.constants.damping > 0) add_damping(s, d, face, part.damped);
         part.grid[d] += (sums.soil_mass - s.image[d][face].soil) * f.soil_old +
                         (sums.water_mass - s.image[d][face].water) * f.water_old;
       }
@@ -99,6 +125,8 @@ Supports<D> support_impulses(const State<D>& s, double dt, double pic) {
         sum.reaction[d] - dt * s.load_force[d] + pic * (s.constants.inertia * sum.grid[d] - s.momentum[d]);
     impulse.surface[d] = sum.surface[d];
   }
+  impulse.damping = sum.damped.impulse;
+  impulse.damped = sum.damped.energy;
   return impulse;
 }
 

@@ -9,12 +9,21 @@ namespace quicksand {
 template <int D>
 struct StepReport;
 
+/// Points → the same in the order of their cells, every so many steps.
+template <int D>
+void sort_points(State<D>& s);
 /// Last velocities → `discharge` of the points that keep it, and what depends on it.
 template <int D>
 void follow_discharge(State<D>& s);
 /// Points → `sums`, `cell_sums`.
 template <int D>
 void points_to_faces(State<D>& s);
+/// Loads on the surfaces of bodies → `sums`, `load_force`.
+template <int D>
+void loads_to_faces(State<D>& s);
+/// Markers of the loads move with the grains.
+template <int D>
+void move_loads(State<D>& s, double dt);
 /// Linear kernel only: gives what acts on faces that hold next to nothing of a soil body to a neighbour that
 /// does → `follower`, `sums`.
 template <int D>
@@ -54,11 +63,12 @@ void move_plates(State<D>& s, double dt);
 template <int D>
 void correct_velocities(State<D>& s, double dt);
 /// Impulses (N·s) that supports give to the points in this step: walls and fixed grains, with the water's
-/// pressure on them; and the water surface to the drops that it carries. Summed from forces, not from the
-/// change of momentum, so that the ledger's balance is a check.
+/// pressure on them; the water surface to the drops that it carries; and damping. Summed from forces, not
+/// from the change of momentum, so that the ledger's balance is a check.
 template <int D>
 struct Supports {
-  Vec<D> walls{}, surface{};
+  Vec<D> walls{}, surface{}, damping{};
+  double damped = 0;  ///< J, kinetic energy that the motion would have without damping, less what it has
 };
 template <int D>
 Supports<D> support_impulses(const State<D>& s, double dt, double pic);
@@ -96,6 +106,14 @@ bool in_plate(const State<D>& s, int d, int face) {
   if (d != kPlateAxis || s.plate_of.empty() || s.plate_of[face] == 0) return false;
   return s.plates[s.plate_of[face] - 1].touches;
 }
+/// The cell that stands for `cell` in the kernel of a point in cell `home`: where `home` lies under a plate
+/// and nothing but air above it, the one below. `fold_plates` leaves nothing in the other.
+template <int D>
+int under_plates(const State<D>& s, int home, int cell) {
+  if (!in_plate(s, kPlateAxis, cell) || s.cell[cell].unknown >= 0) return cell;
+  const bool above = s.grid.cell(home)[kPlateAxis] >= s.grid.cell(cell)[kPlateAxis];
+  return above ? cell : cell - s.grid.stride[kPlateAxis];
+}
 /// Whether the grains (and open water) of a face are pushed by the pressure: at wet faces, and at walls next
 /// to water, where the gradient is that of still water.
 template <int D>
@@ -126,6 +144,14 @@ double pressure_gradient(const State<D>& s, int d, int face) {
 template <int D>
 double felt_gradient(const State<D>& s, int d, int face) {
   return pressure_gradient(s, s.constants.explicit_pressure ? s.pressure_old : s.pressure, d, face);
+}
+
+/// The gradient that the grains of a face feel, Pa/m.
+template <int D>
+double gradient_on_grains(const State<D>& s, int d, int face) {
+  const FaceFlow& f = s.flow[d][face];
+  if (f.soaked > 0) return f.soaked * felt_gradient(s, d, f.soaked_by);
+  return feels_pressure(s, d, face) ? felt_gradient(s, d, face) : 0;
 }
 
 /// Acceleration of the water by its viscosity at a face that carries water, m/s².

@@ -7,9 +7,11 @@
 // which the pressure solve takes in as one rank-1 term: V = V̂ + Δt/M Σ b p. Water does not pass: the flux
 // through the row is V. A plate pushes and never pulls. Its upper side is dry.
 //
-// Kernels of the soil below reach over the row. What they leave there is mirrored relative to the plate, as
+// Kernels of the ground below reach over the row. What they leave there is mirrored relative to the plate, as
 // at a wall: v_above = 2V − v_below. So the face below takes over the mass M′ and minus the force f′ of the
-// one above, and the row 2M′ and 2f′. A rough plate does the same with the sliding components.
+// one above, and the row 2M′ and 2f′. A rough plate does the same with the grains' sliding components; what
+// slides freely goes to the face below as it is: left above, it would move without the pressure below. Water
+// stays where there is free water above the plate, as no one knows then from which side it came.
 
 #include <cmath>
 
@@ -48,6 +50,7 @@ void hold_row(State<D>& s, const Plate<D>& plate) {
     f.soil = f.water = plate.speed;
     f.soil_response = f.water_response = 0;
     f.drag = f.fixed_drag = f.viscous = 0;
+    f.soil_inertia = f.water_inertia = 1;  // what a plate holds moves as the plate does, undamped
   }
 }
 
@@ -67,21 +70,37 @@ Carried carried(const State<D>& s, const Plate<D>& plate) {
   return c;
 }
 
-/// Folds the face `outer` beyond the plane back on `inner`; the plate moves at `speed` along d.
+/// Folds the grains of the face `outer` beyond the plane back on `inner`: `sign` −1 mirrors their velocity
+/// relative to the plate's, `speed` along d; +1 leaves it.
 template <int D>
-void fold_face(State<D>& s, int d, int inner, int outer, double speed) {
+void fold_grains(State<D>& s, int d, int inner, int outer, double sign, double speed) {
   FaceSums &in = s.sums[d][inner], &out = s.sums[d][outer];
-  in.soil_momentum += 2 * speed * out.soil_mass - out.soil_momentum;
-  in.soil_force -= out.soil_force;
+  in.soil_momentum += sign * out.soil_momentum + (1 - sign) * speed * out.soil_mass;
+  in.soil_force += sign * out.soil_force;
   in.soil_mass += out.soil_mass;
   in.grains += out.grains;
   in.soil_bulk += out.soil_bulk;
   in.resistivity += out.resistivity;
-  s.image[d][inner].soil += 2 * out.soil_mass;
+  s.image[d][inner].soil += (1 - sign) * out.soil_mass + sign * s.image[d][outer].soil;
   const double water_mass = out.water_mass, water_momentum = out.water_momentum;
   out = {};
   out.water_mass = water_mass;
   out.water_momentum = water_momentum;
+}
+
+template <int D>
+void fold_water(State<D>& s, int d, int inner, int outer, double sign, double speed) {
+  FaceSums &in = s.sums[d][inner], &out = s.sums[d][outer];
+  in.water_momentum += sign * out.water_momentum + (1 - sign) * speed * out.water_mass;
+  in.water_mass += out.water_mass;
+  s.image[d][inner].water += (1 - sign) * out.water_mass + sign * s.image[d][outer].water;
+  out.water_mass = out.water_momentum = 0;
+}
+
+/// Whether the face of component d, with its middle above the plane, has no free water beside it.
+template <int D>
+bool dry(const State<D>& s, int d, int face) {
+  return s.cell[face].unknown < 0 && (d == kAlong || s.cell[face - s.grid.stride[d]].unknown < 0);
 }
 
 /// The cell above a row holds what kernels of the ground below leave there, unless it is wet by itself.
@@ -108,15 +127,25 @@ void fold_plates(State<D>& s) {
     if (!plate.active || !plate.touches) continue;
     const int up = s.grid.stride[kAlong];
     for (int face : plate.row) {
-      FaceSums& row = s.sums[kAlong][face];
-      const FaceSums& out = s.sums[kAlong][face + up];
+      FaceSums &row = s.sums[kAlong][face], &out = s.sums[kAlong][face + up];
+      FaceImage &held = s.image[kAlong][face], &beyond = s.image[kAlong][face + up];
       row.soil_mass += 2 * out.soil_mass;
       row.soil_momentum += 2 * out.soil_mass * plate.speed;
       row.soil_force += 2 * out.soil_force;
-      fold_face(s, kAlong, face - up, face + up, plate.speed);
+      held.soil += 2 * beyond.soil;
+      fold_grains(s, kAlong, face - up, face + up, -1, plate.speed);
+      if (dry(s, kAlong, face)) {
+        row.water_mass += 2 * out.water_mass;
+        row.water_momentum += 2 * out.water_mass * plate.speed;
+        held.water += 2 * beyond.water;
+        fold_water(s, kAlong, face - up, face + up, -1, plate.speed);
+      }
       fold_cell(s, face);
     }
-    for (const auto& [d, inner] : plate.beside) fold_face(s, d, inner, inner + up, sliding(s, plate, d));
+    for (const auto& [d, inner] : plate.beside) {
+      fold_grains(s, d, inner, inner + up, plate.rough ? -1 : 1, sliding(s, plate, d));
+      if (dry(s, d, inner + up)) fold_water(s, d, inner, inner + up, 1, 0);
+    }
   }
 }
 
@@ -177,18 +206,27 @@ void settle_plates(State<D>& s, double dt) {
 
 namespace {
 
-/// Velocities beyond the plane, for the points whose kernels reach there.
+/// Velocities beyond the plane, for the points whose kernels reach there: as they were folded.
 template <int D>
 void unfold(State<D>& s, const Plate<D>& plate) {
   const int up = s.grid.stride[kAlong];
-  const auto mirror = [&](int d, int inner, int outer, double old_speed, double speed) {
+  for (int face : plate.row) {
+    const FaceFlow &in = s.flow[kAlong][face - up], &row = s.flow[kAlong][face];
+    FaceFlow& out = s.flow[kAlong][face + up];
+    out.soil_old = 2 * row.soil_old - in.soil_old;
+    out.soil = 2 * plate.speed - in.soil;
+    if (!dry(s, kAlong, face)) continue;
+    out.water_old = 2 * row.water_old - in.water_old;
+    out.water = 2 * plate.speed - in.water;
+  }
+  for (const auto& [d, inner] : plate.beside) {
     const FaceFlow& in = s.flow[d][inner];
-    s.flow[d][outer].soil_old = 2 * old_speed - in.soil_old;
-    s.flow[d][outer].soil = 2 * speed - in.soil;
-  };
-  for (int face : plate.row) mirror(kAlong, face - up, face + up, s.flow[kAlong][face].soil_old, plate.speed);
-  for (const auto& [d, inner] : plate.beside)
-    mirror(d, inner, inner + up, sliding(s, plate, d), sliding(s, plate, d));
+    FaceFlow& out = s.flow[d][inner + up];
+    const double twice = plate.rough ? 2 * sliding(s, plate, d) : 0, sign = plate.rough ? -1 : 1;
+    out.soil_old = twice + sign * in.soil_old;
+    out.soil = twice + sign * in.soil;
+    if (dry(s, d, inner + up)) out.water_old = in.water_old, out.water = in.water, out.wet = in.wet;
+  }
 }
 
 }  // namespace
@@ -209,6 +247,31 @@ void move_plates(State<D>& s, double dt) {
   }
 }
 
+namespace {
+
+/// No soil below the cell `above` the plane.
+template <int D>
+bool bare(const State<D>& s, int above) {
+  const int below = above - s.grid.stride[kAlong];
+  return s.cell_sums[below].soil_bulk < 0.5 * s.volume.cell(below);
+}
+
+/// Faces of the sliding components just below the row: those between its cells, and at its ends where the
+/// soil ends too or sticks to the plate's edge.
+template <int D>
+void mark_beside(const State<D>& s, Plate<D>& plate, std::int32_t mark) {
+  for (int i : plate.row)
+    for (int d = 0; d < D; ++d) {
+      if (d == kAlong) continue;
+      const int up = s.grid.stride[kAlong], before = i - s.grid.stride[d], after = i + s.grid.stride[d];
+      if (s.plate_of[before] == mark || plate.rough || bare(s, before)) plate.beside.emplace_back(d, i - up);
+      if (s.plate_of[after] != mark && (plate.rough || bare(s, after)))
+        plate.beside.emplace_back(d, after - up);
+    }
+}
+
+}  // namespace
+
 template <int D>
 void mark_plates(State<D>& s) {
   if (s.plates.empty()) return;
@@ -223,26 +286,15 @@ void mark_plates(State<D>& s) {
       const long rows = std::lround((x[kAlong] - plate.low[kAlong] - plate.sunk) * s.grid.inverse_h - 0.5);
       if (rows != 0) return;
       // Where the soil ends with the plate, kernels reach one column beyond; that belongs to the plate too.
-      const bool bare =
-          s.cell_sums[i - s.grid.stride[kAlong]].soil_bulk < 0.5 * s.volume.cell(i - s.grid.stride[kAlong]);
-      const double beyond = bare ? s.grid.h : 0;
+      const double beyond = bare(s, i) ? s.grid.h : 0;
       bool inside = true;
       for (int d = 0; d < D; ++d)
         if (d != kAlong) inside = inside && x[d] > plate.low[d] - beyond && x[d] < plate.high[d] + beyond;
-      if (inside) {
-        plate.row.push_back(i);
-        s.plate_of[i] = static_cast<std::int32_t>(k + 1);
-      }
-      if (!plate.rough) return;
-      for (int d = 0; d < D; ++d) {
-        if (d == kAlong) continue;
-        const double edge = x[d] - 0.5 * s.grid.h, slack = 0.25 * s.grid.h;
-        bool on = edge > plate.low[d] - slack && edge < plate.high[d] + slack;
-        for (int e = 0; e < D; ++e)
-          if (e != kAlong && e != d) on = on && x[e] > plate.low[e] && x[e] < plate.high[e];
-        if (on) plate.beside.emplace_back(d, i - s.grid.stride[kAlong]);
-      }
+      if (!inside) return;
+      plate.row.push_back(i);
+      s.plate_of[i] = static_cast<std::int32_t>(k + 1);
     });
+    mark_beside(s, plate, static_cast<std::int32_t>(k + 1));
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "engine/step/conjugate_gradients.hpp"
 #include "engine/step/phases.hpp"
 
 namespace quicksand {
@@ -102,127 +103,6 @@ void assemble(State<D>& s, PressureSystem<D>& m, double dt) {
   });
 }
 
-/// Modified incomplete Cholesky without fill. `kModified` keeps the row sums, which halves the iterations
-/// on long columns; slightly below 1 so that pivots stay positive.
-template <int D>
-struct Preconditioner {
-  static constexpr double kModified = 0.97, kSmallestPivot = 0.25;
-  std::vector<double> pivot, half;
-
-  void factor(const PressureSystem<D>& m) {
-    const std::size_t rows = m.cell.size();
-    pivot.resize(rows);
-    half.resize(rows);
-    for (std::size_t r = 0; r < rows; ++r) {
-      double e = m.diagonal[r];
-      for (int d = 0; d < D; ++d) {
-        const int j = m.lower[d][r];
-        if (j < 0) continue;
-        const double a = m.coupling[d][j] * pivot[j];
-        double others = 0;
-        for (int k = 0; k < D; ++k)
-          if (k != d) others += m.coupling[k][j];
-        e -= a * a + kModified * a * others * pivot[j];
-      }
-      if (e < kSmallestPivot * m.diagonal[r]) e = m.diagonal[r];
-      pivot[r] = 1 / std::sqrt(e);
-    }
-  }
-  void apply(const PressureSystem<D>& m, const std::vector<double>& in, std::vector<double>& out) {
-    const int rows = static_cast<int>(m.cell.size());
-    for (int r = 0; r < rows; ++r) {
-      double t = in[r];
-      for (int d = 0; d < D; ++d)
-        if (const int j = m.lower[d][r]; j >= 0) t -= m.coupling[d][j] * pivot[j] * half[j];
-      half[r] = t * pivot[r];
-    }
-    for (int r = rows - 1; r >= 0; --r) {
-      double t = half[r];
-      for (int d = 0; d < D; ++d)
-        if (const int j = m.upper[d][r]; j >= 0) t -= m.coupling[d][r] * pivot[r] * out[j];
-      out[r] = t * pivot[r];
-    }
-  }
-};
-
-template <int D>
-void multiply(const PressureSystem<D>& m, const std::vector<double>& x, std::vector<double>& y) {
-  for (std::size_t r = 0; r < m.cell.size(); ++r) {
-    double t = m.diagonal[r] * x[r];
-    for (int d = 0; d < D; ++d) {
-      if (const int j = m.upper[d][r]; j >= 0) t += m.coupling[d][r] * x[j];
-      if (const int j = m.lower[d][r]; j >= 0) t += m.coupling[d][j] * x[j];
-    }
-    y[r] = t;
-  }
-  for (const auto& piston : m.pistons) {
-    double sum = 0;
-    for (std::size_t k = 0; k < piston.row.size(); ++k) sum += piston.weight[k] * x[piston.row[k]];
-    for (std::size_t k = 0; k < piston.row.size(); ++k)
-      y[piston.row[k]] += piston.response * piston.weight[k] * sum;
-  }
-}
-
-double largest(const std::vector<double>& v) {
-  double m = 0;
-  for (double x : v) m = std::abs(x) > m || std::isnan(x) ? std::abs(x) : m;
-  return m;
-}
-
-double dot(const std::vector<double>& a, const std::vector<double>& b) {
-  double sum = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
-  return sum;
-}
-
-/// Size of the terms that cancel in a row, times rounding: no residual can be asked to be smaller.
-constexpr double kRounding = 1e-15;
-template <int D>
-double largest_term(const PressureSystem<D>& m) {
-  double term = 0;
-  for (std::size_t r = 0; r < m.cell.size(); ++r)
-    term = std::max(term, std::abs(m.diagonal[r] * m.solution[r]));
-  return term;
-}
-
-/// Preconditioned conjugate gradients on `m`, from `m.solution`.
-template <int D>
-PressureReport conjugate_gradients(PressureSystem<D>& m, double tolerance) {
-  constexpr int kMaxIterations = 2000;
-  const std::size_t rows = m.cell.size();
-  PressureReport report{static_cast<int>(rows)};
-  std::vector<double> r(rows), z(rows), direction(rows), image(rows);
-  multiply(m, m.solution, image);
-  for (std::size_t i = 0; i < rows; ++i) r[i] = m.rhs[i] - image[i];
-  const double scale = largest(m.rhs), target = tolerance * scale + kRounding * largest_term(m);
-  double residual = largest(r);
-  if (residual > target) {
-    Preconditioner<D> preconditioner;
-    preconditioner.factor(m);
-    preconditioner.apply(m, r, z);
-    direction = z;
-    double rz = dot(r, z);
-    while (residual > target && report.iterations < kMaxIterations) {
-      multiply(m, direction, image);
-      const double alpha = rz / dot(direction, image);
-      for (std::size_t i = 0; i < rows; ++i) {
-        m.solution[i] += alpha * direction[i];
-        r[i] -= alpha * image[i];
-      }
-      ++report.iterations;
-      residual = largest(r);
-      if (residual <= target) break;
-      preconditioner.apply(m, r, z);
-      const double next = dot(r, z);
-      for (std::size_t i = 0; i < rows; ++i) direction[i] = z[i] + next / rz * direction[i];
-      rz = next;
-    }
-  }
-  report.residual = scale > 0 ? residual / scale : 0;
-  report.converged = residual <= target;
-  return report;
-}
-
 /// One step of the explicit scheme. A row's sum is the part of its diagonal that belongs to the cell alone:
 /// storage and the water surface.
 template <int D>
@@ -251,7 +131,7 @@ PressureReport solve_pressure(State<D>& s, double dt) {
   if (s.constants.explicit_pressure)
     advance_explicitly(system);
   else
-    report = conjugate_gradients(system, s.constants.pressure_tolerance);
+    report = conjugate_gradients(s.grid, system, s.multigrid, s.constants.pressure_tolerance);
   for (std::size_t r = 0; r < system.cell.size(); ++r) s.pressure[system.cell[r]] = system.solution[r];
   return report;
 }

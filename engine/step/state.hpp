@@ -15,6 +15,7 @@
 #include "engine/materials/stability.hpp"
 #include "engine/points/blocks.hpp"
 #include "engine/points/points.hpp"
+#include "engine/step/multigrid.hpp"
 #include "engine/step/pressure_system.hpp"
 
 namespace quicksand {
@@ -59,14 +60,24 @@ struct FaceFlow {
   double pushed = 0;       ///< –, of the grains, by what the gradient is beyond still water's
   std::uint8_t wet = 0;    ///< 1: a side has pressure; 2, 3: extrapolated from such
   bool soil_held = false;  ///< grains are in contact with a wall here
+  /// –, part of the soil of a face just above the water surface that lies below it, as far as kernels reach:
+  /// it shares the pressure gradient of the face at the surface, `soaked_by`.
+  double soaked = 0;
+  int soaked_by = -1;
 
-  double drag = 0;        ///< N·s/m⁴ per cell volume, between the phases
-  double fixed_drag = 0;  ///< N·s/m⁴ on the water, of grains that do not move
-  double exchange = 0;    ///< N·s/m³, impulse of the drag on the grains in this step
-  double viscous = 0;     ///< N/kg, force of the viscosity on the water
+  double drag = 0;                             ///< N·s/m⁴ per cell volume, between the phases
+  double fixed_drag = 0;                       ///< N·s/m⁴ on the water, of grains that do not move
+  double exchange = 0;                         ///< N·s/m³, impulse of the drag on the grains in this step
+  double viscous = 0;                          ///< N/kg, force of the viscosity on the water
+  double soil_inertia = 1, water_inertia = 1;  ///< –, what damping multiplies inertia by in this step
 
   double flux() const { return phi * soil + n * water; }
   double flux_response() const { return phi * soil_response + n * water_response; }
+};
+
+/// What points read of a face's velocities, m/s, close together in memory.
+struct alignas(32) FaceSpeeds {
+  double soil_old = 0, soil = 0, water_old = 0, water = 0;
 };
 
 struct CellSums {
@@ -109,6 +120,7 @@ struct Constants {
   double pic_rate = 0;                                       ///< 1/s
   double pressure_tolerance = 1e-6;
   double drift_time = 0;  ///< s; 0: no feedback
+  double damping = 0;     ///< –, of the stage; engine/step/damping.hpp
   Kernel kernel = Kernel::quadratic;
   Transfer transfer = Transfer::flip;
   bool explicit_pressure = false;  ///< pressure advanced from the last one instead of solved for
@@ -117,11 +129,19 @@ struct Constants {
   std::vector<StepLimit> step_limits;  ///< per soil
 };
 
-/// A load on one side of a soil body: massless markers that ride on its surface.
+/// Carries its part of a surface load in the layer of soil below the surface; moves with the grains.
+template <int D>
+struct LoadMarker {
+  Vec<D> x{};         ///< m
+  Vec<D> normal{};    ///< –, F N: the outward direction at the start, stretched and turned with the soil
+  double area = 0;    ///< m², ∂χ/∂N dV0; about an axis times the surface's radius; sums to the surface
+  double volume = 0;  ///< m³, χ dV0
+};
+
+/// A load on one side of a soil body; engine/step/loads.cpp.
 template <int D>
 struct SurfaceLoad {
-  std::vector<Vec<D>> marker;  ///< m
-  std::vector<double> area;    ///< m², of each marker; about an axis times the radius at the start
+  std::vector<LoadMarker<D>> markers;
   Vec<D> traction{};           ///< Pa at full load
   double start = 0, ramp = 0;  ///< s
   bool active = false;
@@ -145,7 +165,7 @@ struct Plate {
   double reaction = 0;                      ///< N, upward, from the plate on soil and water in the last step
   bool touches = true;                      ///< false while it is lifted off the soil
   std::vector<int> row;                     ///< faces of component y in its plane
-  std::vector<std::pair<int, int>> beside;  ///< rough: (component, face) just below the plane
+  std::vector<std::pair<int, int>> beside;  ///< (other component, face) just below the plane
 };
 
 /// A face of the boundary through which water enters and leaves; engine/step/ports.cpp.
@@ -203,6 +223,7 @@ struct State {
   SoilPoints<D> soil;   ///< moving grains
   SoilPoints<D> fixed;  ///< grains held in place
   WaterPoints<D> water;
+  std::vector<char> removed;  ///< per body, whether a stage took it away; empty while none did
   BlockList soil_blocks, water_blocks;
   KernelVolumes<D> volume;
   std::vector<SurfaceLoad<D>> loads;
@@ -220,6 +241,7 @@ struct State {
   std::array<std::vector<FaceImage>, D> image;
   std::array<std::vector<Follower>, D> follower;  ///< linear kernel only
   std::array<std::vector<FaceFlow>, D> flow;
+  std::array<std::vector<FaceSpeeds>, D> speeds;  ///< of `flow`, once it is final
   std::array<std::vector<FixedFace>, D> fixed_face;
   std::vector<CellSums> cell_sums;
   std::vector<CellSums> fixed_cell;
@@ -227,8 +249,10 @@ struct State {
   std::vector<double> pressure;      ///< Pa per cell; 0 in air
   std::vector<double> pressure_old;  ///< Pa, at the start of the step
   PressureSystem<D> pressure_system;
+  Multigrid<D> multigrid;  ///< of the pressure system
 
   double time = 0;      ///< s
+  long steps = 0;       ///< that were begun
   Vec<D> momentum{};    ///< N·s, Σ m v of all moving points, × inertia
   Vec<D> load_force{};  ///< N, of the surface loads in this step
   Interventions interventions;

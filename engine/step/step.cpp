@@ -70,6 +70,7 @@ template <int D>
 StepReport<D> advance(State<D>& s, double dt) {
   StepReport<D> report;
   Stopwatch clock(s.phase_seconds);
+  sort_points(s);       // now and then
   set_ports(s);         // levels of reservoirs, seepage faces
   follow_discharge(s);  // speeds that the drag asks for
   points_to_faces(s);   // masses, momenta, forces on the faces

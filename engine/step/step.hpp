@@ -15,6 +15,8 @@ struct StepReport {
   Vec<D> momentum{};                                           ///< N·s, Σ m v of all points after the step
   double moving_mass = 0;                                      ///< kg, of all points that move
   Vec<D> impulse_walls{}, impulse_surface{}, impulse_loads{};  ///< N·s in this step
+  Vec<D> impulse_damping{};                                    ///< N·s in this step
+  double damped = 0;                                           ///< J, taken by damping in this step
   Exchange<D> exchange;                                        ///< through ports, in this step
   double kinetic = 0, strain = 0;                              ///< J
   double soil_limit = 0;  ///< s, smallest stable step of any soil point; infinite without

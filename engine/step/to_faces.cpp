@@ -82,25 +82,6 @@ void water_to_faces(State<D>& s, std::uint32_t p) {
               [&](int cell, double w) { s.cell_sums[cell].water += w * volume; });
 }
 
-/// Surface loads are few: serial, in the order of their markers.
-template <class Shape, int D>
-void loads_to_faces(State<D>& s) {
-  s.load_force = {};
-  for (const SurfaceLoad<D>& load : s.loads) {
-    if (!load.active) continue;
-    const double rise = load.ramp > 0 ? std::min(1.0, (s.time - load.start) / load.ramp) : 1.0;
-    for (std::size_t m = 0; m < load.marker.size(); ++m) {
-      const PointKernel<D, Shape> kernel(s.grid, load.marker[m]);
-      const double pull = rise * load.area[m];
-      for (int d = 0; d < D; ++d) s.load_force[d] += pull * load.traction[d];
-      for (int d = 0; d < D; ++d)
-        for_faces(s.grid, s.soil_walls, kernel, d, [&](int face, double w, double sign, const Vec<D>&) {
-          s.sums[d][face].soil_force += sign * w * pull * load.traction[d];
-        });
-    }
-  }
-}
-
 }  // namespace
 
 template <int D>
@@ -126,8 +107,8 @@ void points_to_faces(State<D>& s) {
       for (auto i = s.water_blocks.begin[b]; i < s.water_blocks.begin[b + 1]; ++i)
         water_to_faces<S>(s, s.water_blocks.order[i]);
     });
-    loads_to_faces<typename S::Shape>(s);
   });
+  loads_to_faces(s);
   if (s.constants.kernel == Kernel::linear) join_light_faces(s);
   fold_plates(s);
 }

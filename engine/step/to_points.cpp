@@ -3,15 +3,13 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/step/move_point.hpp"
 #include "engine/step/phases.hpp"
 #include "engine/step/scheme.hpp"
 #include "engine/step/step.hpp"
 
 namespace quicksand {
 namespace {
-
-/// Distance from a wall at which a point that would enter it is put back, in cells.
-constexpr double kClearance = 1e-6;
 
 /// Totals of one block; summed over blocks in their order.
 template <int D>
@@ -38,30 +36,6 @@ struct Totals {
   }
 };
 
-/// Moves x by u; a closed face on the way stops the component across it. Returns whether it did.
-template <int D>
-bool move(const Grid<D>& grid, const Walls<D>& walls, int home, Vec<D>& x, const Vec<D>& u) {
-  if (!walls.folds(home)) {
-    for (int d = 0; d < D; ++d) x[d] += u[d];
-    return false;
-  }
-  bool stopped = false;
-  for (int d = 0; d < D; ++d) {
-    const Cell<D> c = grid.cell_of(x);
-    const double low = grid.origin[d] + c[d] * grid.h, high = low + grid.h;
-    const int face = grid.index(c);
-    x[d] += u[d];
-    if (x[d] <= low && walls.closed(d, face)) {
-      stopped = stopped || x[d] < low;
-      x[d] = low + kClearance * grid.h;
-    } else if (x[d] >= high && walls.closed(d, face + grid.stride[d])) {
-      stopped = stopped || x[d] > high;
-      x[d] = high - kClearance * grid.h;
-    }
-  }
-  return stopped;
-}
-
 /// FLIP with a little PIC: the point keeps its own velocity plus the grid's change, and relaxes to the
 /// grid's velocity at `pic_rate`, a rate so that the damping does not depend on the time step. The affine
 /// transfer takes the grid's velocity as it is (`pic` = 1): what PIC would lose is in the gradient.
@@ -85,25 +59,23 @@ template <class Shape, int D>
 bool falls_freely(const State<D>& s, const PointKernel<D, Shape>& kernel) {
   if (s.cell[kernel.home].confined) return false;
   double depth = 0;
-  for_centers(s.grid, s.water_walls, kernel, [&](int c, double w) { depth += w * s.cell[c].depth; });
+  for_centers(s.grid, s.water_walls, kernel,
+              [&](int c, double w) { depth += w * s.cell[under_plates(s, kernel.home, c)].depth; });
   return depth < -kFreeHeight;
 }
 
-/// Way of the water at x in dt by the midpoint rule; Euler's way leads out of every bend.
+/// Way of the water at x in dt by the midpoint rule; Euler's way leads out of every bend. `half` is half the
+/// way by the kernel's own velocity, near enough for the middle.
 template <class Shape, int D>
-Vec<D> path(const State<D>& s, const Vec<D>& x, double dt) {
-  const auto way = [&](const PointKernel<D, typename Shape::Mover>& kernel, double seconds) {
-    Vec<D> u{};
-    for (int d = 0; d < D; ++d)
-      for_faces(s.grid, s.water_walls, kernel, d, [&](int face, double w, double sign, const Vec<D>&) {
-        u[d] += seconds * sign * w * s.flow[d][face].water;
-      });
-    return u;
-  };
-  const PointKernel<D, typename Shape::Mover> start(s.grid, x);
-  Vec<D> middle = x;
-  move<D>(s.grid, s.water_walls, start.home, middle, way(start, 0.5 * dt));
-  return way({s.grid, middle}, dt);
+Vec<D> path(const State<D>& s, int home, const Vec<D>& x, const Vec<D>& half, double dt) {
+  Vec<D> middle = x, way{};
+  move_point<D>(s.grid, s.water_walls, home, middle, half);
+  const PointKernel<D, typename Shape::Mover> kernel(s.grid, middle);
+  for (int d = 0; d < D; ++d)
+    for_faces(s.grid, s.water_walls, kernel, d, [&](int face, double w, double sign, const Vec<D>&) {
+      way[d] += dt * sign * w * s.speeds[d][face].water;
+    });
+  return way;
 }
 
 template <class S, int D>
@@ -117,8 +89,9 @@ void water_from_faces(State<D>& s, std::uint32_t p, double dt, double pic, Total
     double v_old = 0, v_new = 0, carried = 0;
     Vec<D> slope{};
     for_faces(s.grid, s.water_walls, kernel, d, [&](int face, const FaceWeight<D>& weight, double sign) {
-      const FaceFlow& f = s.flow[d][face];
-      const double lift = falls && f.wet > 1 ? f.water - f.water_old - dt * s.constants.fall(d) : 0;
+      const FaceSpeeds& f = s.speeds[d][face];
+      const double lift =
+          falls && s.flow[d][face].wet > 1 ? f.water - f.water_old - dt * s.constants.fall(d) : 0;
       v_old += sign * weight.w * f.water_old;
       v_new += sign * weight.w * (f.water - lift);
       carried += sign * weight.w * lift;
@@ -132,8 +105,11 @@ void water_from_faces(State<D>& s, std::uint32_t p, double dt, double pic, Total
     totals.momentum[d] += water.mass[p] * v;
     speed2 += v * v;
   }
-  if (!falls) step = path<typename S::Shape, D>(s, water.x[p], dt);
-  totals.interventions.clipped_points += move<D>(s.grid, s.water_walls, kernel.home, water.x[p], step);
+  if (!falls) {
+    for (double& component : step) component *= 0.5;
+    step = path<typename S::Shape, D>(s, kernel.home, water.x[p], step, dt);
+  }
+  totals.interventions.clipped_points += move_point<D>(s.grid, s.water_walls, kernel.home, water.x[p], step);
   totals.mass += water.mass[p];
   totals.kinetic += 0.5 * water.mass[p] * speed2;
   totals.max_speed2 = std::max(totals.max_speed2, speed2);
@@ -160,7 +136,7 @@ void soil_from_faces(State<D>& s, std::uint32_t p, double dt, double pic, Totals
     double v_old = 0, v_new = 0;
     Vec<D> slope{};
     for_faces(s.grid, s.soil_walls, kernel, d, [&](int face, const FaceWeight<D>& weight, double sign) {
-      const FaceFlow& f = s.flow[d][face];
+      const FaceSpeeds& f = s.speeds[d][face];
       v_old += sign * weight.w * f.soil_old;
       v_new += sign * weight.w * f.soil;
       for (int j = 0; j < D; ++j) l[d][j] += sign * f.soil * weight.gradient[j];
@@ -174,13 +150,13 @@ void soil_from_faces(State<D>& s, std::uint32_t p, double dt, double pic, Totals
     speed2 += v * v;
   }
   const double hoop = S::axial ? step[0] / (dt * soil.x[p][0]) : 0;  // 1/s, v_r/r
-  totals.interventions.clipped_points += move<D>(s.grid, s.soil_walls, kernel.home, soil.x[p], step);
+  totals.interventions.clipped_points += move_point<D>(s.grid, s.soil_walls, kernel.home, soil.x[p], step);
 
-  // Dˢn/Dt = (1−n) ∇·vˢ, integrated: the grains' volume stays.
-  double divergence = hoop;
-  for (int d = 0; d < D; ++d) divergence += l[d][d];
+  // Dˢn/Dt = (1−n) ∇·vˢ, integrated: the grains' volume stays. A step that turns the soil has ∇·vˢ < 0, as
+  // its chords lead inward of their arcs; the determinant knows.
   const double before = soil.porosity[p];
-  const double exact = 1 - (1 - before) / std::max(1 + dt * divergence, 0.1);
+  const double stretch = volume_ratio<D>(l, dt) * (1 + dt * hoop);
+  const double exact = 1 - (1 - before) / std::max(stretch, 0.1);
   const double n = soil.porosity[p] = std::clamp(exact, kMinRoom, kMaxPorosity);
   totals.interventions.clamped_values += n != exact;
 
@@ -209,32 +185,32 @@ void soil_from_faces(State<D>& s, std::uint32_t p, double dt, double pic, Totals
   totals.finite = totals.finite && std::isfinite(speed2) && std::isfinite(strain);
 }
 
-/// Markers of a surface load ride on the grains.
-template <class Shape, int D>
-void move_loads(State<D>& s, double dt) {
-  for (SurfaceLoad<D>& load : s.loads)
-    for (Vec<D>& x : load.marker) {
-      const PointKernel<D, Shape> kernel(s.grid, x);
-      Vec<D> step{};
-      for (int d = 0; d < D; ++d)
-        for_faces(s.grid, s.soil_walls, kernel, d, [&](int face, double w, double sign, const Vec<D>&) {
-          step[d] += dt * sign * w * s.flow[d][face].soil;
-        });
-      move<D>(s.grid, s.soil_walls, kernel.home, x, step);
-    }
+template <int D>
+void publish_speeds(State<D>& s) {
+  s.blocks.all([&](int b) {
+    s.blocks.cells(s.grid, b, true, [&](int i, const Cell<D>&) {
+      for (int d = 0; d < D; ++d) {
+        const FaceFlow& f = s.flow[d][i];
+        s.speeds[d][i] = {f.soil_old, f.soil, f.water_old, f.water};
+      }
+    });
+  });
 }
 
 }  // namespace
 
 template <int D>
 void faces_to_points(State<D>& s, double dt, StepReport<D>& report) {
+  publish_speeds(s);
   const double pic = s.constants.transfer == Transfer::apic ? 1 : 1 - std::exp(-s.constants.pic_rate * dt);
   const Supports<D> supports = support_impulses(s, dt, pic);
   report.impulse_walls = supports.walls;
   report.impulse_surface = supports.surface;
+  report.impulse_damping = supports.damping;
+  report.damped = supports.damped;
   const Totals<D> totals = with_scheme(s, [&](auto scheme) {
     using S = decltype(scheme);
-    const Totals<D> sum = s.blocks.template sum<Totals<D>>([&](int b) {
+    return s.blocks.template sum<Totals<D>>([&](int b) {
       Totals<D> t;
       for (auto i = s.soil_blocks.begin[b]; i < s.soil_blocks.begin[b + 1]; ++i)
         soil_from_faces<S>(s, s.soil_blocks.order[i], dt, pic, t);
@@ -242,9 +218,8 @@ void faces_to_points(State<D>& s, double dt, StepReport<D>& report) {
         water_from_faces<S>(s, s.water_blocks.order[i], dt, pic, t);
       return t;
     });
-    move_loads<typename S::Shape>(s, dt);
-    return sum;
   });
+  move_loads(s, dt);
   const double inertia = s.constants.inertia;
   for (int d = 0; d < D; ++d) {
     report.impulse_surface[d] += inertia * totals.let_go[d];

@@ -3,6 +3,7 @@
 
 #include <atomic>
 
+#include "engine/step/damping.hpp"
 #include "engine/step/phases.hpp"
 
 namespace quicksand {
@@ -65,6 +66,37 @@ void solve_soil(const Balance& b, double dt, FaceFlow& f) {
   f.water = f.water_response = 0;
 }
 
+/// v̂ and responses of what is there: water, and grains if they move.
+void solve(const Balance& b, double dt, bool moving_soil, FaceFlow& f) {
+  if (b.water_mass > 0 && moving_soil)
+    solve_pair(b, dt, f);
+  else if (b.water_mass > 0)
+    solve_water(b, dt, f);
+  else if (moving_soil)
+    solve_soil(b, dt, f);
+}
+
+/// Inertia with which each phase is damped, from what it would do in this step under the last pressure.
+template <int D>
+void damp(const State<D>& s, int d, int face, double dt, bool moving_soil, Balance& b, FaceFlow& f) {
+  FaceFlow trial = f;
+  solve(b, dt, moving_soil, trial);
+  const double alpha = s.constants.damping;
+  if (moving_soil) {
+    const double change = trial.soil - trial.soil_response * gradient_on_grains(s, d, face) - f.soil_old;
+    f.soil_inertia = 1 / damped_part(alpha, f.soil_old, change);
+    b.soil_momentum += (f.soil_inertia - 1) * b.soil_mass * f.soil_old;
+    b.soil_mass *= f.soil_inertia;
+  }
+  if (b.water_mass > 0) {
+    const double g = f.wet ? pressure_gradient(s, d, face) : 0,
+                 change = trial.water - trial.water_response * g - f.water_old;
+    f.water_inertia = 1 / damped_part(alpha, f.water_old, change);
+    b.water_momentum += (f.water_inertia - 1) * b.water_mass * f.water_old;
+    b.water_mass *= f.water_inertia;
+  }
+}
+
 /// +1 or −1: the direction in which grains may leave a closed face; 0: neither (walls of no thickness,
 /// which may have grains on both sides; planes of symmetry).
 template <int D>
@@ -74,22 +106,55 @@ int leaving_direction(const State<D>& s, int d, int face) {
   return low == high ? 0 : low ? 1 : -1;
 }
 
-/// Part of a face's volume that lies inside, where a reservoir begins at the face.
-constexpr double kInsidePort = 0.5;
-
-/// Part of a wet face's volume that is soil or below the water surface; 1 away from the surface. At a
-/// reservoir it is the inner half, however unevenly its points lie.
+/// What soil and water take of a face's volume, –.
+struct Taken {
+  double bulk = 0, fill = 0;  ///< soil with its pores; what lies below the water surface
+};
 template <int D>
-double wet_part(const State<D>& s, int d, int face) {
-  if (s.cell[face].unknown >= 0 && s.cell[face - s.grid.stride[d]].unknown >= 0) return 1;
+Taken taken(const State<D>& s, int d, int face) {
   const FaceSums& f = s.sums[d][face];
   const double volume = s.volume.face(d, face);
   const FixedFace fixed = s.fixed.size() ? s.fixed_face[d][face] : FixedFace{};
   const double grains = f.grains / volume + fixed.phi, bulk = f.soil_bulk / volume + fixed.bulk;
-  const double fill = submerged(s, d, face)
-                          ? kInsidePort
-                          : fill_of(f.water_mass / (s.constants.water_density * volume), grains, bulk);
-  return std::clamp(std::max(fill, bulk), kLeastWetPart, 1.0);
+  return {bulk, fill_of(f.water_mass / (s.constants.water_density * volume), grains, bulk)};
+}
+
+/// Part of a face's volume that lies inside, where a reservoir begins at the face.
+constexpr double kInsidePort = 0.5;
+
+/// Part of a wet face's volume that is soil or below the water surface; 1 where its kernel, 1½ cells long,
+/// does not reach the surface. At a reservoir it is the inner half, however unevenly its points lie.
+template <int D>
+double wet_part(const State<D>& s, int d, int face) {
+  const int step = s.grid.stride[d];
+  const auto dry = [&](int from, int to, int between) {
+    return s.cell[from].unknown >= 0 && s.cell[to].unknown < 0 && !s.water_walls.closed(d, between) &&
+           !submerged(s, d, between);
+  };
+  const bool inside = s.cell[face].unknown >= 0 && s.cell[face - step].unknown >= 0;
+  if (inside && !dry(face, face + step, face + step) && !dry(face - step, face - 2 * step, face - step))
+    return 1;
+  const Taken t = taken(s, d, face);
+  const double fill = submerged(s, d, face) ? kInsidePort : t.fill;
+  return std::clamp(std::max(fill, t.bulk), kLeastWetPart, 1.0);
+}
+
+/// A face between air cells, next to the face at the water surface: what kernels reach there of the soil
+/// below the surface feels the pressure as that face does. Without it a saturated layer drains 1/48 of a cell
+/// above its top. Returns the part of the face's volume that soil and water take; 0 for other faces.
+template <int D>
+double soak(const State<D>& s, int d, int face, FaceFlow& f) {
+  const int step = s.grid.stride[d];
+  for (const int side : {-1, 1}) {
+    const int next = face + side * step, wet_cell = side < 0 ? face - 2 * step : next;
+    if (s.cell[wet_cell].unknown < 0 || s.water_walls.closed(d, next) || in_plate(s, d, next)) continue;
+    const Taken t = taken(s, d, face);
+    if (t.bulk <= 0 || t.fill <= 0) return 0;
+    f.soaked = std::min(1.0, t.fill / t.bulk);
+    f.soaked_by = next;
+    return std::max(t.fill, t.bulk);
+  }
+  return 0;
 }
 
 /// Moving grains beside fixed ones: a face's gradient is the mean over both, but each part loses head by its
@@ -120,7 +185,8 @@ void predict_face(State<D>& s, int d, int face, double dt) {
 
   // A face at the water surface stands for the wet part of its volume: what half a face of saturated soil
   // holds is dense over that half, and the pressure falls over that half only.
-  const double part = f.wet ? wet_part(s, d, face) : 1;
+  const double soaked = soil && water && !f.wet ? soak(s, d, face, f) : 0;
+  const double part = f.wet ? wet_part(s, d, face) : soaked > 0 ? soaked : 1;
   Balance b;
   f.phi = sums.grains / (part * volume);
   double fixed_phi = 0, fixed_resistivity = 0;
@@ -129,18 +195,19 @@ void predict_face(State<D>& s, int d, int face, double dt) {
     fixed_resistivity = s.fixed_face[d][face].resistivity / part;
   }
   f.n = std::max(1 - f.phi - fixed_phi, kMinRoom);
-  f.pushed = pushed_part(f.phi, sums.resistivity / (part * volume), fixed_phi, fixed_resistivity);
+  f.pushed = f.phi;
+  if (f.wet) f.pushed = pushed_part(f.phi, sums.resistivity / (part * volume), fixed_phi, fixed_resistivity);
   if (soil) {
     f.soil_old = sums.soil_momentum / sums.soil_mass;
     b.soil_mass = inertia * sums.soil_mass / (part * volume);
     b.soil_momentum = b.soil_mass * (f.soil_old + dt * fall) + dt * sums.soil_force / (part * volume);
-    if (feels_pressure(s, d, face)) b.soil_momentum -= dt * (f.phi - f.pushed) * rho * s.constants.gravity[d];
+    if (f.wet) b.soil_momentum -= dt * (f.phi - f.pushed) * rho * s.constants.gravity[d];
   }
   if (water || f.wet) {
     // Inertia of a wet face is that of a full one, n ρw, not of the few drops whose kernels reach it; where
     // there is no pressure, drops carry and are dragged by what is there.
     const double full = f.n * rho;
-    const double there = f.wet ? 1 : std::min(1.0, sums.water_mass / (volume * full));
+    const double there = f.wet ? 1 : std::min(1.0, sums.water_mass / (part * volume * full));
     f.water_old = water ? sums.water_momentum / sums.water_mass : 0;
     b.water_mass = inertia * there * full;
     f.viscous = water && s.constants.viscosity > 0 ? viscous_acceleration(s, d, face) : 0;
@@ -158,22 +225,15 @@ void predict_face(State<D>& s, int d, int face, double dt) {
     // Contact, one-sided: grains stay on the wall while what acts on them, with the last pressure
     // gradient, presses them to it.
     FaceFlow trial = f;
-    if (b.water_mass > 0)
-      solve_pair(b, dt, trial);
-    else
-      solve_soil(b, dt, trial);
+    solve(b, dt, true, trial);
     const double leaving = trial.soil - trial.soil_response * pressure_gradient(s, d, face);
     held = !(leaving * leaving_direction(s, d, face) > 0);
   }
   if (soil_closed) s.soil_walls.set_separated(d, face, soil && !held);
   f.soil_held = held;
   const bool moving_soil = soil && !held;
-  if (b.water_mass > 0 && moving_soil)
-    solve_pair(b, dt, f);
-  else if (b.water_mass > 0)
-    solve_water(b, dt, f);
-  else if (moving_soil)
-    solve_soil(b, dt, f);
+  if (s.constants.damping > 0) damp(s, d, face, dt, moving_soil, b, f);
+  solve(b, dt, moving_soil, f);
   if (!water_open) f.water = f.water_response = 0;
 }
 
@@ -222,8 +282,8 @@ void correct_velocities(State<D>& s, double dt) {
     s.blocks.cells(s.grid, b, true, [&](int face, const Cell<D>&) {
       for (int d = 0; d < D; ++d) {
         FaceFlow& f = s.flow[d][face];
-        const double g = feels_pressure(s, d, face) ? felt_gradient(s, d, face) : 0;
-        if (f.wet) f.water -= f.water_response * g;
+        const double g = gradient_on_grains(s, d, face);
+        if (f.wet || f.soaked > 0) f.water -= f.water_response * g;
         f.soil -= f.soil_response * g;
         f.exchange = dt * f.drag * (f.water - f.soil);
         if (s.soil_walls.closed(d, face) && f.soil * leaving_direction(s, d, face) <= 0) f.soil = 0;
@@ -237,7 +297,7 @@ void correct_velocities(State<D>& s, double dt) {
       s.blocks.cells(s.grid, b, true, [&](int face, const Cell<D>&) {
         for (int d = 0; d < D; ++d) {
           FaceFlow& f = s.flow[d][face];
-          if (f.wet || s.water_walls.closed(d, face)) continue;
+          if (f.wet || s.water_walls.closed(d, face) || in_plate(s, d, face)) continue;
           // Hats reach faces at which their weight is zero and its gradient is not.
           if (s.sums[d][face].water_mass <= 0 && s.constants.kernel != Kernel::linear) continue;
           double v;

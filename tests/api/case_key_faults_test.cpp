@@ -9,7 +9,7 @@ using test::Mutation, test::name_of;
 
 class CaseKeys : public test::CaseFaults {};
 
-TEST_P(CaseKeys, GiveTheirPointers) { test::expect_faults(GetParam(), false); }
+TEST_P(CaseKeys, GiveTheirPointers) { test::expect_faults(GetParam()); }
 
 const Mutation of_the_format[] = {
     {"WrongVersion", ADD("/schema", R"("quicksand.case/2")"), {"/schema"}},
@@ -166,6 +166,19 @@ const Mutation of_keys_without_effect[] = {
 
 INSTANTIATE_TEST_SUITE_P(Format, CaseKeys, testing::ValuesIn(of_the_format), name_of);
 INSTANTIATE_TEST_SUITE_P(WithoutEffect, CaseKeys, testing::ValuesIn(of_keys_without_effect), name_of);
+
+/// Damping brings water to rest as well as grains; slow processes need grains.
+TEST(CaseKeysOfStages, WaterAloneCanBeDamped) {
+  const auto stage = [](const char* key, const char* value) {
+    return std::string(
+               R"({"schema":"quicksand.case/1","name":"pool","domain":{"max":[1,1],"cell_size":0.1},)") +
+           R"("bodies":[{"name":"pool","kind":"water","region":{"box":{"min":[0,0],"max":[1,0.5]}}}],)" +
+           R"("stages":[{"name":"only","duration":1,")" + key + "\":" + value + "}]}";
+  };
+  EXPECT_TRUE(parse_case(stage("damping", "0.5")).faults.empty());
+  EXPECT_EQ(test::pointers(parse_case(stage("quasi_static", "true")).faults),
+            (std::vector<std::string>{"/stages/0/quasi_static"}));
+}
 
 }  // namespace
 }  // namespace quicksand

@@ -21,9 +21,11 @@ double unbalanced(double now, double out, double before, double in) {
   return all > 0 ? std::abs(now + out - all) / all : 0;
 }
 double water_error(const Ledger& l) {
-  return unbalanced(l.water_mass, l.water_out, l.water_mass_initial, l.water_in);
+  return unbalanced(l.water_mass, l.water_out + l.water_removed, l.water_mass_initial, l.water_in);
 }
-double soil_error(const Ledger& l) { return unbalanced(l.solid_mass, l.soil_out, l.solid_mass_initial, 0); }
+double soil_error(const Ledger& l) {
+  return unbalanced(l.solid_mass, l.soil_out + l.soil_removed, l.solid_mass_initial, 0);
+}
 
 nlohmann::json ledger_json(const Ledger& l) {
   return {{"mass_error", std::max(water_error(l), soil_error(l))},

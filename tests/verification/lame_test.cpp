@@ -58,7 +58,7 @@ Errors tube(int cells, double held_to) {
 }
 
 TEST(Lame, ConvergesToTheTubesStress) {
-  tube(5, 0.03);
+  tube(5, 0.01);
   tube(10, 0.01);
   tube(20, 0.01);
 }

@@ -149,5 +149,17 @@ TEST(MakeWalls, FixedBodiesStopGrainsButNotWater) {
   expect_fixed_body_stops_grains_only<3>(t, {1, 2, 1}, 2 * (2 * 3 + 2 * 1 + 3 * 1));
 }
 
+TEST(MakeWalls, RemovedBodiesStopNothing) {
+  Scene s = test::plane(1, 1, 0.1);
+  add_body(s, "filter", BodyKind::saturated_soil, {0.2, 0.3, 0}, {0.6, 0.5, 0});
+  add_body(s, "plate", BodyKind::soil, {0.2, 0.7, 0}, {0.6, 0.8, 0});
+  for (Body& body : s.bodies) body.fixed = true;
+  const Grid<2> grid = make_grid<2>(s);
+  const auto walls = make_walls(s, grid, {}, {1, 0});
+  EXPECT_FALSE(walls.soil.blocked(grid.index({3, 4})));
+  EXPECT_TRUE(walls.soil.blocked(grid.index({3, 7})));
+  EXPECT_EQ(closed_count(grid, walls.soil, 1), 20 + 8);
+}
+
 }  // namespace
 }  // namespace quicksand

@@ -75,6 +75,25 @@ TEST(Plan, StepsAreThoseOfTheRun) {
   EXPECT_NEAR(static_cast<double>(r.report.steps) / plan.steps, 1, 0.3);
 }
 
+/// Stages after a body is gone count with what it leaves: less soil, and a top that lies open.
+TEST(Plan, StepsFollowWhatStagesRemove) {
+  const auto steps_of = [](const std::vector<std::string>& removed) {
+    Scene s = bed();
+    s.soils["hard"] = s.soils["sand"];
+    s.soils["hard"].model.young_modulus *= 100;
+    add_body(s, "lid", BodyKind::saturated_soil, {0, 0.5, 0}, {1, 0.6, 0});
+    s.bodies.back().soil = "hard";
+    Stage after = s.stages[0];
+    after.name = "after", after.remove_bodies = removed;
+    s.stages.push_back(after);
+    return make_plan(s).steps;
+  };
+  const double all = steps_of({});
+  EXPECT_LT(steps_of({"lid"}), 0.6 * all);  // far longer steps in the second half
+  EXPECT_GT(steps_of({"lid"}), 0.5 * all);
+  EXPECT_GT(steps_of({"lid", "pool"}), steps_of({"lid"}));  // the bed lies open to the air
+}
+
 TEST(Plan, SaysWhatIsLeftOut) {
   const auto says = [](const Plan& plan, const std::string& text) {
     return std::any_of(plan.reasons.begin(), plan.reasons.end(),

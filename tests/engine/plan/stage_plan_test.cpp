@@ -37,21 +37,22 @@ TEST(StagePlan, SaysWhatEachStageDoes) {
   EXPECT_EQ(stages[1].name, "drain");
   EXPECT_EQ(stages[1].begin, 10);
   EXPECT_EQ(stages[2].end, 1e6 + 15);
-  EXPECT_EQ(stages[0].does,
-            (Sentences{
-                "Gates closed: valve, sluice.", "Reservoir lake: level 2 m.", "Reservoir drain: level 0.5 m.",
-                "Damping 0.5: that share of the out-of-balance force is taken away; what rests is right, "
-                "the way there is not.",
-                "Ends at rest: when no point is faster than 0.001 m/s, not before 2 s of it."}));
+  EXPECT_EQ(
+      stages[0].does,
+      (Sentences{
+          "Gates closed: valve, sluice.", "Reservoir lake: level 2 m.", "Reservoir drain: level 0.5 m.",
+          "Damping 0.5: that share of the out-of-balance force is turned against the motion; what rests is "
+          "right, the way there is not.",
+          "Ends at rest: when no point is faster than 0.001 m/s, not before 2 s of it."}));
   EXPECT_EQ(stages[1].does,
             (Sentences{"Gates open: valve.", "Gates closed: sluice.", "Reservoir lake: level 2 m.",
                        "Reservoir drain: level 0.5 m, then 0.25 m over 3 s.",
                        "Load road begins, rising over 0.25 s.", "Load crane begins with its full value."}));
   EXPECT_EQ(
       stages[2].does,
-      (Sentences{"Removes: fill.", "Gates closed: valve, sluice.",
-                 "Reservoir lake: level 2 m, then 1.5 m at once.", "Reservoir drain: level 0.25 m.",
-                 "Load road goes on.", "Load crane ends.",
+      (Sentences{"Removes: fill; grains and water leave from wherever they are by then.",
+                 "Gates closed: valve, sluice.", "Reservoir lake: level 2 m, then 1.5 m at once.",
+                 "Reservoir drain: level 0.25 m.", "Load road goes on.", "Load crane ends.",
                  "Quasi-static: inertia, never weight, is scaled so that a wave crosses the soil 200 times "
                  "within the process; whatever falls is slower than in nature."}));
 }

@@ -123,7 +123,7 @@ TEST(Transfer, RigidSpinPassesUnchanged) {
     advance(s, 1e-6);
     double worst = 0;
     for (std::size_t p = 0; p < s.soil.size(); ++p)
-      for (int d = 0; d < 2; ++d) worst = std::max(worst, std::abs(s.soil.v[p][d] - before[p][d]));
+      for (int d = 0; d < 2; ++d) worst = std::max(worst, std::abs(s.soil.v[p][d] - before[s.soil.id[p]][d]));
     EXPECT_LT(worst, choice.transfer == Transfer::apic ? 1e-12 : 3e-5) << name(choice);
   }
 }

@@ -1,0 +1,37 @@
+#pragma once
+// Loops over long vectors: in parallel where that pays, with sums in a fixed order.
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <vector>
+
+namespace quicksand {
+
+/// Entries of a chunk. Shorter vectors are gone through by one thread; sums are taken chunk by chunk in any
+/// case, so that they do not depend on it.
+inline constexpr std::size_t kChunk = 2048;
+
+/// f(begin, end) for the chunks of 0 … n.
+template <class F>
+void for_chunks(std::size_t n, F&& f) {
+  const std::size_t chunks = (n + kChunk - 1) / kChunk;
+  const auto one = [&](std::size_t c) { f(c * kChunk, std::min(n, (c + 1) * kChunk)); };
+  if (chunks < 3)
+    for (std::size_t c = 0; c < chunks; ++c) one(c);
+  else
+    tbb::parallel_for(std::size_t{0}, chunks, one);
+}
+
+/// Combines f(begin, end) of all chunks, in their order.
+template <class T, class F, class Combine>
+T reduce_chunks(std::size_t n, T start, F&& f, Combine&& combine) {
+  const std::size_t chunks = (n + kChunk - 1) / kChunk;
+  std::vector<T> part(chunks);
+  for_chunks(n, [&](std::size_t begin, std::size_t end) { part[begin / kChunk] = f(begin, end); });
+  for (const T& p : part) start = combine(start, p);
+  return start;
+}
+
+}  // namespace quicksand
