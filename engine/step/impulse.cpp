@@ -23,7 +23,10 @@ double soil_reaction(const State<D>& s, int d, int face, double dt) {
     const double drag = f.exchange * s.volume.face(d, face);
     return mirrored + s.constants.inertia * sums.soil_mass * (change - dt * s.constants.fall(d)) - drag;
   }
-  return mirrored + dt * (sums.soil_force - sums.grains * gradient_on_grains(s, d, face));
+  double gradient = gradient_on_grains(s, d, face);
+  if (f.pushed != f.phi)
+    gradient += (f.pushed / f.phi - 1) * (gradient - s.constants.water_density * s.constants.gravity[d]);
+  return mirrored + dt * (sums.soil_force - sums.grains * gradient);
 }
 
 template <int D>

@@ -57,8 +57,9 @@ struct FaceFlow {
   double water_old = 0, water = 0;               ///< m/s
   double soil_response = 0, water_response = 0;  ///< m/s per Pa/m
   double phi = 0, n = 1;                         ///< –, moving grains; room for water
-  std::uint8_t wet = 0;                          ///< 1: a side has pressure; 2, 3: extrapolated from such
-  bool soil_held = false;                        ///< grains are in contact with a wall here
+  double pushed = 0;       ///< –, of the grains, by what the gradient is beyond still water's
+  std::uint8_t wet = 0;    ///< 1: a side has pressure; 2, 3: extrapolated from such
+  bool soil_held = false;  ///< grains are in contact with a wall here
   /// –, part of the soil of a face just above the water surface that lies below it, as far as kernels reach:
   /// it shares the pressure gradient of the face at the surface, `soaked_by`.
   double soaked = 0;

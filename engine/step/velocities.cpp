@@ -48,8 +48,8 @@ void solve_pair(const Balance& b, double dt, FaceFlow& f) {
   const double det = a11 * a22 - a12 * a21;
   f.soil = (a22 * b.soil_momentum - a12 * b.water_momentum) / det;
   f.water = (a11 * b.water_momentum - a21 * b.soil_momentum) / det;
-  f.soil_response = dt * (a22 * f.phi - a12 * f.n) / det;
-  f.water_response = dt * (a11 * f.n - a21 * f.phi) / det;
+  f.soil_response = dt * (a22 * f.pushed - a12 * f.n) / det;
+  f.water_response = dt * (a11 * f.n - a21 * f.pushed) / det;
 }
 
 /// Water past grains that are held.
@@ -62,7 +62,7 @@ void solve_water(const Balance& b, double dt, FaceFlow& f) {
 
 void solve_soil(const Balance& b, double dt, FaceFlow& f) {
   f.soil = b.soil_momentum / b.soil_mass;
-  f.soil_response = dt * f.phi / b.soil_mass;
+  f.soil_response = dt * f.pushed / b.soil_mass;
   f.water = f.water_response = 0;
 }
 
@@ -157,6 +157,14 @@ double soak(const State<D>& s, int d, int face, FaceFlow& f) {
   return 0;
 }
 
+/// Moving grains beside fixed ones: a face's gradient is the mean over both, but each part loses head by its
+/// own resistance, E_m = ρ_m q. With the drag n E A_m/(A_m + A_f), A resistivity × bulk, the moving part gets
+/// its whole A_m q if the pressure pushes this much of it.
+double pushed_part(double phi, double resistivity, double fixed_phi, double fixed_resistivity) {
+  if (fixed_resistivity <= 0) return phi;
+  return (phi + fixed_phi) * resistivity / (resistivity + fixed_resistivity);
+}
+
 template <int D>
 void predict_face(State<D>& s, int d, int face, double dt) {
   const FaceSums& sums = s.sums[d][face];
@@ -187,10 +195,13 @@ void predict_face(State<D>& s, int d, int face, double dt) {
     fixed_resistivity = s.fixed_face[d][face].resistivity / part;
   }
   f.n = std::max(1 - f.phi - fixed_phi, kMinRoom);
+  f.pushed = f.phi;
+  if (f.wet) f.pushed = pushed_part(f.phi, sums.resistivity / (part * volume), fixed_phi, fixed_resistivity);
   if (soil) {
     f.soil_old = sums.soil_momentum / sums.soil_mass;
     b.soil_mass = inertia * sums.soil_mass / (part * volume);
     b.soil_momentum = b.soil_mass * (f.soil_old + dt * fall) + dt * sums.soil_force / (part * volume);
+    if (f.wet) b.soil_momentum -= dt * (f.phi - f.pushed) * rho * s.constants.gravity[d];
   }
   if (water || f.wet) {
     // Inertia of a wet face is that of a full one, n ρw, not of the few drops whose kernels reach it; where
