@@ -7,7 +7,10 @@
 namespace quicksand {
 namespace {
 
-double total(const std::vector<double>& mass) { return std::accumulate(mass.begin(), mass.end(), 0.0); }
+/// In more digits than are kept, so that the order of the points does not show.
+double total(const std::vector<double>& mass) {
+  return static_cast<double>(std::accumulate(mass.begin(), mass.end(), 0.0L));
+}
 
 template <int D, class F>
 void each_set(const State<D>& s, F&& f) {
