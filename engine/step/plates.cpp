@@ -13,6 +13,7 @@
 // slides freely goes to the face below as it is: left above, it would move without the pressure below. Water
 // stays where there is free water above the plate, as no one knows then from which side it came.
 
+#include <algorithm>
 #include <cmath>
 
 #include "engine/step/phases.hpp"
@@ -123,6 +124,11 @@ double sliding(const State<D>& s, const Plate<D>& plate, int d) {
 
 template <int D>
 void fold_plates(State<D>& s) {
+  // Not when they move: until the step's end its ledger asks which faces they hold.
+  if (std::any_of(s.plates.begin(), s.plates.end(), [&](const Plate<D>& plate) {
+        return plate.active && plate.row_number != std::lround(plate.sunk * s.grid.inverse_h);
+      }))
+    mark_plates(s);
   for (Plate<D>& plate : s.plates) {
     if (!plate.active || !plate.touches) continue;
     const int up = s.grid.stride[kAlong];
@@ -241,9 +247,7 @@ void move_plates(State<D>& s, double dt) {
     }
     s.load_force[kAlong] += plate.reaction;
     if (plate.touches) unfold(s, plate);
-    const double before = plate.sunk;
     plate.sunk += dt * plate.speed;
-    if (std::lround(before * s.grid.inverse_h) != std::lround(plate.sunk * s.grid.inverse_h)) mark_plates(s);
   }
 }
 
@@ -275,6 +279,7 @@ void mark_beside(const State<D>& s, Plate<D>& plate, std::int32_t mark) {
 template <int D>
 void mark_plates(State<D>& s) {
   if (s.plates.empty()) return;
+  for (Plate<D>& plate : s.plates) plate.row_number = std::lround(plate.sunk * s.grid.inverse_h);
   s.plate_of.assign(s.grid.count(), 0);
   for (std::size_t k = 0; k < s.plates.size(); ++k) {
     Plate<D>& plate = s.plates[k];

@@ -159,6 +159,7 @@ struct Plate {
   double start = 0, ramp = 0;  ///< s
   bool active = false;
 
+  long row_number = 0;                      ///< of the faces in `row`, from where the plate began, upwards
   double sunk = 0;                          ///< m, how far it has moved up (negative: down)
   double mass = 0;                          ///< kg, of all that moves with it in this step
   double speed = 0;                         ///< m/s, upward
