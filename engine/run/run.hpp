@@ -20,8 +20,8 @@ struct FrameField {
   std::vector<float> values;
 };
 
-/// State of all points at one time: moving grains, fixed grains, water, each in the order in which they were made
-/// (seeded, then let in), so that a point keeps its place as long as none before it leaves.
+/// State of all points at one time: moving grains, fixed grains, water, each in the order in which they were
+/// made (seeded, then let in), so that a point keeps its place as long as none before it leaves.
 struct Frame {
   std::size_t index = 0;
   double time = 0;  ///< s
