@@ -85,8 +85,7 @@ template <class Shape, int D>
 bool falls_freely(const State<D>& s, const PointKernel<D, Shape>& kernel) {
   if (s.cell[kernel.home].confined) return false;
   double depth = 0;
-  for_centers(s.grid, s.water_walls, kernel,
-              [&](int c, double w) { depth += w * s.cell[under_plates(s, kernel.home, c)].depth; });
+  for_centers(s.grid, s.water_walls, kernel, [&](int c, double w) { depth += w * s.cell[c].depth; });
   return depth < -kFreeHeight;
 }
 

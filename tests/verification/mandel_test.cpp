@@ -168,7 +168,7 @@ Errors mandel_page(double nu, int cells, double held_to) {
   page.error("pressure at x/a = 0.25, 0.5, 0.75", e.profile, held_to, "of p0");
   page.near("largest pressure at the centre", e.peak, m.peak(), 0.005, "p0");
   page.error("settlement of the plate", e.settlement, held_to, "of its last");
-  page.value("pressure at all points, to the drained side", e.everywhere, "of p0");
+  page.error("pressure at all points", e.everywhere, held_to, "of p0");
   return e;
 }
 
@@ -195,9 +195,9 @@ TEST(Mandel, TheSeriesIsThePublishedOne) {
 }
 
 TEST(Mandel, RisesAndFallsAsTheSeries) {
-  const Errors coarse = mandel_page(0.3, 10, 0.02), fine = mandel_page(0.3, 20, 0.01);
+  const Errors coarse = mandel_page(0.3, 10, 0.03), fine = mandel_page(0.3, 20, 0.01);
   EXPECT_GE(std::log2(coarse.centre / fine.centre), 1);
-  EXPECT_GE(std::log2(coarse.profile / fine.profile), 1);
+  EXPECT_GE(std::log2(coarse.everywhere / fine.everywhere), 1.5);
 }
 
 /// From nothing: the plate makes the undrained answer itself, under a load that rises over T = 0…0.02.
