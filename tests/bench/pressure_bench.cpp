@@ -6,6 +6,7 @@
 #include <tbb/task_arena.h>
 
 #include "engine/step/step.hpp"
+#include "tests/bench/groups.hpp"
 #include "tests/bench/scenes.hpp"
 #include "tests/bench/workload.hpp"
 
@@ -14,16 +15,21 @@ namespace {
 
 /// The same for every grid: the first steps after a scene is let go ask for more iterations than later ones.
 constexpr int kSteps = 8;
+/// Least traffic of an iteration per unknown in the plane: pressure, residual and direction read and written,
+/// the diagonal and two couplings read.
+constexpr double kLeastBytes = (3 * 2 + 1 + 2) * sizeof(double);
 
 void solve(benchmark::State& state, const Scene& scene) {
   const auto work = warm_up(scene);
   constexpr auto kPressure = static_cast<std::size_t>(Phase::pressure);
   const double before = work->phase_seconds()[kPressure];
-  double iterations = 0, last = before;
+  double iterations = 0, unknowns = 0, last = before;
   tbb::task_arena arena(1);
   arena.execute([&] {
     for (auto _ : state) {
-      iterations += work->step();
+      const PressureReport report = work->step();
+      iterations += report.iterations;
+      unknowns = report.unknowns;
       const double now = work->phase_seconds()[kPressure];
       state.SetIterationTime(now - last);
       last = now;
@@ -32,9 +38,13 @@ void solve(benchmark::State& state, const Scene& scene) {
   using benchmark::Counter;
   state.counters["pressure_iterations"] = Counter(iterations, Counter::kAvgIterations);
   state.counters["s_per_iteration"] = iterations > 0 ? (last - before) / iterations : 0;
+  state.counters["unknowns"] = unknowns;
+  state.counters["least_bytes"] = kLeastBytes * unknowns;
 }
 
-const bool registered = [] {
+}  // namespace
+
+void register_pressure() {
   for (Kind kind : {Kind::bed, Kind::dam})
     for (int cells : {32, 64, 128, 256, 512, 1024})
       benchmark::RegisterBenchmark(
@@ -43,8 +53,6 @@ const bool registered = [] {
           ->Iterations(kSteps)
           ->UseManualTime()
           ->Unit(benchmark::kMillisecond);
-  return true;
-}();
+}
 
-}  // namespace
 }  // namespace quicksand::bench

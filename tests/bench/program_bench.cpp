@@ -6,16 +6,17 @@
 #include <benchmark/benchmark.h>
 #include <tbb/task_arena.h>
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 
 #include "engine/run/run.hpp"
+#include "tests/bench/groups.hpp"
 #include "tests/bench/scenes.hpp"
 #include "tests/bench/workload.hpp"
 
 namespace quicksand::bench {
 namespace {
-
-constexpr double kPointSteps = 4e6;
 
 struct Nowhere : ResultSink {
   void begin(const std::vector<SeriesInfo>&) override {}
@@ -23,7 +24,7 @@ struct Nowhere : ResultSink {
   void sample(double, const std::vector<double>&) override {}
 };
 
-/// Ends a run after so many steps.
+/// Ends a run after so many steps: cancelled, it makes a last frame.
 struct StopAfter : RunMonitor {
   explicit StopAfter(long n) : steps(n) {}
   void progress(const Progress& p) override { done = p.step; }
@@ -45,6 +46,7 @@ void bare_steps(benchmark::State& state, const Scene& scene, long steps) {
     tbb::task_arena arena(1);
     arena.execute([&] {
       const auto work = start(scene);
+      work->frame();
       const auto begin = std::chrono::steady_clock::now();
       for (long i = 0; i < steps; ++i) work->step();
       const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
@@ -69,15 +71,18 @@ void whole_run(benchmark::State& state, Scene scene, long steps) {
   }
 }
 
-const bool registered = [] {
-  for (const auto& [kind, points] : {std::pair{Kind::column, 1e5}, std::pair{Kind::dam, 1e5}}) {
-    const long steps = static_cast<long>(kPointSteps / points);
+}  // namespace
+
+void register_program(double point_steps) {
+  constexpr double kPoints = 1e5, kFewestSteps = 10;
+  const long steps = std::lround(std::max(kFewestSteps, point_steps / kPoints));
+  for (Kind kind : {Kind::column, Kind::dam}) {
     const std::string name =
-        "program/" + scene_name(kind, 2) + "/points:" + std::to_string(static_cast<long>(points));
+        "program/" + scene_name(kind, 2) + "/points:" + std::to_string(static_cast<long>(kPoints));
     const auto add = [&](const std::string& way, auto&& measure) {
       benchmark::RegisterBenchmark((name + way).c_str(),
-                                   [=, kind = kind, points = points](benchmark::State& state) {
-                                     measure(state, make_scene(kind, {2, points, 1}), steps);
+                                   [=](benchmark::State& state) {
+                                     measure(state, make_scene(kind, {2, kPoints, 1}), steps);
                                    })
           ->Iterations(1)
           ->UseManualTime()
@@ -86,8 +91,6 @@ const bool registered = [] {
     add("/steps", bare_steps);
     add("/run", whole_run);
   }
-  return true;
-}();
+}
 
-}  // namespace
 }  // namespace quicksand::bench

@@ -8,7 +8,9 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <cmath>
 
+#include "tests/bench/groups.hpp"
 #include "tests/bench/limit.hpp"
 #include "tests/bench/scenes.hpp"
 #include "tests/bench/workload.hpp"
@@ -16,16 +18,11 @@
 namespace quicksand::bench {
 namespace {
 
-/// Point-steps of one measurement: about a second of one core.
-constexpr double kPointSteps = 4e6;
-/// Steps at least, so that no single one decides, and at most.
-constexpr long kFewestSteps = 3, kMostSteps = 200;
+/// Steps of one measurement at least, so that no single one decides, and at most.
+constexpr double kFewestSteps = 3, kMostSteps = 200;
 /// Steps of a pair in domains of two sizes, of which the larger may be a hundred times slower.
-constexpr long kRoomSteps = 20;
-
-long steps_for(double points) {
-  return std::clamp(static_cast<long>(kPointSteps / points), kFewestSteps, kMostSteps);
-}
+constexpr long kRoomSteps = 5;
+constexpr double kRoomPoints = 1e4;
 
 /// s, of all threads of the process.
 double cpu_seconds() {
@@ -52,61 +49,63 @@ void report(benchmark::State& state, const Workload& work, const PhaseSeconds& b
   for (const auto& [part, bytes] : work.allocated()) state.counters["bytes " + part] = bytes;
 }
 
-void steps(benchmark::State& state, Workload& work, int threads) {
+void measure(benchmark::State& state, Workload& work, int threads) {
   const PhaseSeconds before = work.phase_seconds();
   double point_steps = 0, iterations = 0;
   const double cpu = cpu_seconds();
   tbb::task_arena arena(threads);
   arena.execute([&] {
     for (auto _ : state) {
-      iterations += work.step();
+      iterations += work.step().iterations;
       point_steps += work.points();
     }
   });
   report(state, work, before, point_steps, iterations, cpu_seconds() - cpu);
 }
 
-void register_step(Kind kind, const SceneSize& size) {
+void add_step(Kind kind, const SceneSize& size, double point_steps) {
   const std::string scene = scene_name(kind, size.dimensions);
   const std::string group = "step/" + scene + "/points:" + std::to_string(static_cast<long>(size.points));
+  const long steps = std::lround(std::clamp(point_steps / size.points, kFewestSteps, kMostSteps));
   for (int threads : {1, 2})
     benchmark::RegisterBenchmark((group + "/threads:" + std::to_string(threads)).c_str(),
                                  [=](benchmark::State& state) {
                                    Workload& work =
                                        kept_workload(group, group, [&] { return make_scene(kind, size); });
-                                   steps(state, work, threads);
+                                   measure(state, work, threads);
                                    report_least_work(state, kind, size.dimensions);
                                  })
-        ->Iterations(steps_for(size.points))
+        ->Iterations(steps)
         ->UseRealTime()
         ->Unit(benchmark::kMillisecond);
 }
 
-void register_room(Kind kind, double points) {
+void add_room(Kind kind) {
   const std::string group =
-      "room/" + scene_name(kind, 2) + "/points:" + std::to_string(static_cast<long>(points));
+      "room/" + scene_name(kind, 2) + "/points:" + std::to_string(static_cast<long>(kRoomPoints));
   for (int room : {1, 10}) {
     const std::string name = group + "/room:" + std::to_string(room);
-    benchmark::RegisterBenchmark(
-        name.c_str(),
-        [=](benchmark::State& state) {
-          Workload& work = kept_workload(group, name, [&] { return make_scene(kind, {2, points, room}); });
-          steps(state, work, 1);
-        })
+    benchmark::RegisterBenchmark(name.c_str(),
+                                 [=](benchmark::State& state) {
+                                   Workload& work = kept_workload(group, name, [&] {
+                                     return make_scene(kind, {2, kRoomPoints, room});
+                                   });
+                                   measure(state, work, 1);
+                                 })
         ->Iterations(kRoomSteps)
         ->UseRealTime()
         ->Unit(benchmark::kMillisecond);
   }
 }
 
-const bool registered = [] {
-  for (const NamedKind& k : kinds()) {
-    for (double points : {1e4, 1e5, 1e6, 4e6}) register_step(k.kind, {2, points, 1});
-    for (double points : {1e5, 1e6}) register_step(k.kind, {3, points, 1});
-    for (double points : {1e4, 1e5}) register_room(k.kind, points);
-  }
-  return true;
-}();
-
 }  // namespace
+
+void register_steps(double point_steps) {
+  for (const NamedKind& k : kinds()) {
+    for (double points : {1e4, 1e5, 1e6, 4e6}) add_step(k.kind, {2, points, 1}, point_steps);
+    for (double points : {1e5, 1e6}) add_step(k.kind, {3, points, 1}, point_steps);
+    add_room(k.kind);
+  }
+}
+
 }  // namespace quicksand::bench

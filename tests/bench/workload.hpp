@@ -7,6 +7,7 @@
 #include <string>
 
 #include "engine/plan/step_bounds.hpp"
+#include "engine/run/frame.hpp"
 #include "engine/run/setup.hpp"
 #include "engine/step/step.hpp"
 #include "tests/bench/allocated.hpp"
@@ -19,8 +20,9 @@ using PhaseSeconds = std::array<double, kPhaseNames.size()>;
 class Workload {
  public:
   virtual ~Workload() = default;
-  /// Iterations of the pressure solve.
-  virtual int step() = 0;
+  virtual PressureReport step() = 0;
+  /// Makes a frame of all fields, as a run does, and drops it.
+  virtual void frame() const = 0;
   virtual double points() const = 0;
   virtual const PhaseSeconds& phase_seconds() const = 0;
   virtual Allocated allocated() const = 0;
@@ -36,12 +38,13 @@ class WorkloadIn final : public Workload {
     last_ = advance(state_, kFirstStep);
   }
 
-  int step() override {
+  PressureReport step() override {
     const StepSituation now{last_.soil_limit, last_.max_speed, state_.water.size() > 0, last_.fast_wave_limit,
                             state_.constants.inertia};
     last_ = advance(state_, choose_step(scene_, now).seconds);
-    return last_.pressure.iterations;
+    return last_.pressure;
   }
+  void frame() const override { make_frame(scene_, state_, 0, ""); }
   double points() const override { return static_cast<double>(state_.soil.size() + state_.water.size()); }
   const PhaseSeconds& phase_seconds() const override { return state_.phase_seconds; }
   Allocated allocated() const override { return quicksand::bench::allocated(state_); }
@@ -57,6 +60,10 @@ class WorkloadIn final : public Workload {
 
 /// Steps before anything is measured: buffers have their sizes, the pressure its history.
 inline constexpr int kWarmUpSteps = 6;
+
+/// Whether dry scenes and those of water alone have instantiations of the step of their own, which `start`
+/// then has to choose. Not so far: State<D> serves all.
+inline constexpr bool kReducedSteps = false;
 
 /// A scene after its first step.
 inline std::unique_ptr<Workload> start(const Scene& scene) {
