@@ -1,9 +1,12 @@
 #include "engine/grid/walls.hpp"
 
+#include <map>
+
 namespace quicksand {
 namespace {
 
-/// Per axis and face: 0 passes, 1 mirrors, 2 mirrors and changes the sign of tangential components.
+/// Per axis and face: 0 passes; these mirror, the second changing the sign of tangential components too.
+constexpr std::uint8_t kMirror = 1, kNoSlipMirror = 2, kCarriedMirror = 3;
 template <int D>
 using Mirrors = std::array<std::vector<std::uint8_t>, D>;
 
@@ -33,7 +36,7 @@ Walk<D> walk(const Grid<D>& grid, const Mirrors<D>& mirrors, int home, const std
     if (mirrors[axis][face]) {
       w.mirrored[axis] = true;
       w.wall[axis] = face;
-      w.no_slip[axis] = mirrors[axis][face] == 2;
+      w.no_slip[axis] = mirrors[axis][face] == kNoSlipMirror;
     } else {
       w.cell += offset[axis] * grid.stride[axis];
     }
@@ -78,13 +81,16 @@ int fold_center(const Grid<D>& grid, const Mirrors<D>& mirrors, int home, const 
   return agree ? landed : home;
 }
 
+/// (component, inner face, mirror) → number of the ghost.
+using GhostIndex = std::map<std::array<int, 3>, std::size_t>;
+
 }  // namespace
 
 template <int D>
 Walls<D>::Walls(const Grid<D>& grid) : blocked_(grid.count(), 1), fold_of_(grid.count(), -1) {
   for (auto& c : closed_) c.assign(grid.count(), 0);
   for (auto& c : separated_) c.assign(grid.count(), 0);
-  separated_next_ = port_ = separated_;
+  separated_next_ = port_ = carried_ = separated_;
   for_each_cell(grid, [&](int i, const Cell<D>&) { blocked_[i] = 0; });
 }
 
@@ -95,7 +101,12 @@ void Walls<D>::rebuild(const Grid<D>& grid) {
   Mirrors<D> mirrors = port_;
   for (int d = 0; d < D; ++d)
     for (std::size_t i = 0; i < closed_[d].size(); ++i)
-      if (closed_[d][i]) mirrors[d][i] = closed_[d][i] == kNoSlip ? 2 : 1;
+      if (closed_[d][i])
+        mirrors[d][i] = closed_[d][i] == kNoSlip ? kNoSlipMirror : kMirror;
+      else if (carried_[d][i])
+        mirrors[d][i] = kCarriedMirror;
+  GhostIndex index;
+  for (auto& ghosts : ghosts_) ghosts.clear();
   for_each_cell(grid, [&](int home, const Cell<D>&) {
     CellFolds f;
     bool plain = true;
@@ -119,6 +130,12 @@ void Walls<D>::rebuild(const Grid<D>& grid) {
         fold.target = w.cell + position * grid.stride[d];
         for (int a = 0; a < D; ++a)
           if (a != d && w.mirrored[a] && w.no_slip[a]) fold.tangential = -fold.tangential;
+        if (w.mirrored[d] && mirrors[d][w.wall[d]] == kCarriedMirror) {
+          const auto [at, is_new] = index.try_emplace({d, fold.target, w.wall[d]}, ghosts_[d].size());
+          if (is_new) ghosts_[d].push_back({fold.target, w.wall[d]});
+          fold.target = grid.count() + static_cast<int>(at->second);
+          fold.normal_wall = -1;
+        }
         plain = plain && w.direct();
       }
     for (int k = 0; k < kCells; ++k) {

@@ -7,6 +7,9 @@
 // blocks are treated alike, because visibility is asked cell by cell, from the point's own cell outwards.
 // A port is a face of the boundary that can be open: it mirrors too, but keeps the sign of the normal
 // component while it is open, so that what flows through it continues unchanged beyond.
+// A carried face moves with a velocity of its own (a plate) and is not closed. It mirrors on both sides,
+// relative to that velocity, which kernels do not know: normal components behind it are kept apart, on
+// ghosts.
 
 #include <algorithm>
 #include <array>
@@ -24,6 +27,12 @@ struct Fold {
   int target = 0;        ///< face or cell index that receives it
   float tangential = 1;  ///< sign from mirrors across other axes
   int normal_wall = -1;  ///< wall face of the mirror across the component's own axis; −1: none
+};
+
+/// Stands for the faces behind a carried face, seen from one side.
+struct Ghost {
+  int inner = 0;    ///< face whose mirror image it is
+  int carried = 0;  ///< the mirror
 };
 
 template <int D>
@@ -50,6 +59,15 @@ class Walls {
   void close_as_symmetry(int d, int face) { closed_[d][face] = kSymmetry; }
 
   void open(int d, int face) { closed_[d][face] = kOpen; }
+
+  bool carried(int d, int face) const { return carried_[d][face] != 0; }
+  void carry(int d, int face) { carried_[d][face] = 1; }
+  void carry_none() {
+    for (auto& c : carried_) std::fill(c.begin(), c.end(), std::uint8_t{0});
+  }
+  /// Ghosts of component d: number k has the index grid.count() + k where faces are asked for. Known after
+  /// `rebuild`.
+  const std::vector<Ghost>& ghosts(int d) const { return ghosts_[d]; }
 
   bool port(int d, int face) const { return port_[d][face] != 0; }
   /// Makes a face of the boundary a port, open at first.
@@ -80,10 +98,11 @@ class Walls {
  private:
   static constexpr std::uint8_t kOpen = 0, kSlip = 1, kNoSlip = 2, kSymmetry = 3;
   std::array<std::vector<std::uint8_t>, D> closed_;  ///< one of the above per face
-  std::array<std::vector<std::uint8_t>, D> separated_, separated_next_, port_;
+  std::array<std::vector<std::uint8_t>, D> separated_, separated_next_, port_, carried_;
   std::vector<std::uint8_t> blocked_;
   std::vector<std::int32_t> fold_of_;
   std::vector<CellFolds> folds_;
+  std::array<std::vector<Ghost>, D> ghosts_;
 };
 
 extern template class Walls<2>;

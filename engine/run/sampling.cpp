@@ -82,10 +82,8 @@ double porosity_at(const State<D>& s, const Vec<D>& x) {
   double grains = 0;
   with_kernel(s.constants.kernel, [&](auto shape) {
     const PointKernel<D, decltype(shape)> kernel(s.grid, x);
-    for_centers(s.grid, s.water_walls, kernel, [&](int c, double w) {
-      const int cell = under_plates(s, kernel.home, c);
-      grains += w * s.cell_sums[cell].grains / s.volume.cell(cell);
-    });
+    for_centers(s.grid, s.water_walls, kernel,
+                [&](int c, double w) { grains += w * s.cell_sums[c].grains / s.volume.cell(c); });
   });
   return 1 - grains;
 }

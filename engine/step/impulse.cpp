@@ -101,7 +101,7 @@ struct Sum {
 
 template <int D>
 Supports<D> support_impulses(const State<D>& s, double dt, double pic) {
-  const Sum<D> sum = s.blocks.template sum<Sum<D>>([&](int b) {
+  Sum<D> sum = s.blocks.template sum<Sum<D>>([&](int b) {
     Sum<D> part;
     s.blocks.cells(s.grid, b, true, [&](int face, const Cell<D>&) {
       for (int d = 0; d < D; ++d) {
@@ -118,6 +118,8 @@ Supports<D> support_impulses(const State<D>& s, double dt, double pic) {
     });
     return part;
   });
+  for (const Plate<D>& plate : s.plates)
+    for (int d = 0; d < D; ++d) sum.grid[d] += plate.slid[d];
   // Relaxing points to the grid's velocity keeps momentum but for what mirrors took from the grid.
   Supports<D> impulse;
   for (int d = 0; d < D; ++d) {
@@ -125,6 +127,8 @@ Supports<D> support_impulses(const State<D>& s, double dt, double pic) {
         sum.reaction[d] - dt * s.load_force[d] + pic * (s.constants.inertia * sum.grid[d] - s.momentum[d]);
     impulse.surface[d] = sum.surface[d];
   }
+  for (const Plate<D>& plate : s.plates)  // images have inertia and weight, but are no mass
+    if (plate.folded) impulse.walls[kPlateAxis] += dt * s.constants.gravity[kPlateAxis] * plate.mirrored;
   impulse.damping = sum.damped.impulse;
   impulse.damped = sum.damped.energy;
   return impulse;

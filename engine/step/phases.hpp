@@ -44,10 +44,11 @@ void find_surface(State<D>& s);
 /// Provisional velocities with drag inside, responses to a pressure gradient → `flow`.
 template <int D>
 void predict_velocities(State<D>& s, double dt);
-/// Which faces plates hold, from where they are now → `plates`, `plate_of`.
+/// Which faces plates hold, from where they are now → `plates`, `plate_of`, mirrors in `water_walls`, ghosts.
+/// Between two steps only: a step folds and unfolds alike.
 template <int D>
 void mark_plates(State<D>& s);
-/// What kernels leave beyond plates mirrored back → `sums`, `cell_sums`.
+/// What kernels leave beyond plates mirrored back → `sums`.
 template <int D>
 void fold_plates(State<D>& s);
 /// Common velocities of what plates hold, and how these answer to the pressure → `plates`, `flow`.
@@ -59,6 +60,9 @@ void settle_plates(State<D>& s, double dt);
 /// Plates move with their soil.
 template <int D>
 void move_plates(State<D>& s, double dt);
+/// Velocities behind plates, for the points whose kernels reach there → `flow`.
+template <int D>
+void unfold_plates(State<D>& s);
 /// Velocities after the pressure gradient; extrapolated a little way into the air → `flow`.
 template <int D>
 void correct_velocities(State<D>& s, double dt);
@@ -105,14 +109,6 @@ template <int D>
 bool in_plate(const State<D>& s, int d, int face) {
   if (d != kPlateAxis || s.plate_of.empty() || s.plate_of[face] == 0) return false;
   return s.plates[s.plate_of[face] - 1].touches;
-}
-/// The cell that stands for `cell` in the kernel of a point in cell `home`: where `home` lies under a plate
-/// and nothing but air above it, the one below. `fold_plates` leaves nothing in the other.
-template <int D>
-int under_plates(const State<D>& s, int home, int cell) {
-  if (!in_plate(s, kPlateAxis, cell) || s.cell[cell].unknown >= 0) return cell;
-  const bool above = s.grid.cell(home)[kPlateAxis] >= s.grid.cell(cell)[kPlateAxis];
-  return above ? cell : cell - s.grid.stride[kPlateAxis];
 }
 /// Whether the grains (and open water) of a face are pushed by the pressure: at wet faces, and at walls next
 /// to water, where the gradient is that of still water.

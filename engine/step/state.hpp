@@ -159,14 +159,19 @@ struct Plate {
   double start = 0, ramp = 0;  ///< s
   bool active = false;
 
-  long row_number = 0;                      ///< of the faces in `row`, from where the plate began, upwards
   double sunk = 0;                          ///< m, how far it has moved up (negative: down)
   double mass = 0;                          ///< kg, of all that moves with it in this step
   double speed = 0;                         ///< m/s, upward
   double reaction = 0;                      ///< N, upward, from the plate on soil and water in the last step
   bool touches = true;                      ///< false while it is lifted off the soil
+  bool folded = false;                      ///< kernels were mirrored at it in this step
+  double mirrored = 0;                      ///< kg, that mirror images add to what moves with it
+  Vec<D> slid{};                            ///< kg·m/s, what its sliding gave to mirror images
   std::vector<int> row;                     ///< faces of component y in its plane
   std::vector<std::pair<int, int>> beside;  ///< (other component, face) just below the plane
+
+  /// Part of the load or speed that acts at time t.
+  double rise(double t) const { return ramp > 0 ? std::clamp((t - start) / ramp, 0.0, 1.0) : 1; }
 };
 
 /// A face of the boundary through which water enters and leaves; engine/step/ports.cpp.
@@ -231,6 +236,7 @@ struct State {
   std::vector<Plate<D>> plates;
   /// Per face of component y, 1 + index of the plate in whose row it lies, or 0. Empty without plates.
   std::vector<std::int32_t> plate_of;
+  bool plates_left_rows = false;  ///< some plate has come to another row: to be marked before the next step
   std::vector<Port<D>> ports;
   std::vector<ReservoirState> reservoirs;
   std::vector<Straddler> straddlers;
@@ -238,6 +244,7 @@ struct State {
   std::array<std::vector<std::int32_t>, D>
       port_of;  ///< per face, index into ports or −1; empty without ports
 
+  // Behind the faces of component y, sums, image, flow and speeds hold the ghosts of `water_walls`.
   std::array<std::vector<FaceSums>, D> sums;
   std::array<std::vector<FaceImage>, D> image;
   std::array<std::vector<Follower>, D> follower;  ///< linear kernel only

@@ -86,6 +86,7 @@ void water_to_faces(State<D>& s, std::uint32_t p) {
 
 template <int D>
 void points_to_faces(State<D>& s) {
+  if (s.plates_left_rows) mark_plates(s);
   s.soil_walls.commit_separated();
   s.blocks.group(s.grid, s.soil.x, s.soil_blocks);
   s.blocks.group(s.grid, s.water.x, s.water_blocks);
@@ -109,8 +110,8 @@ void points_to_faces(State<D>& s) {
     });
   });
   loads_to_faces(s);
-  if (s.constants.kernel == Kernel::linear) join_light_faces(s);
   fold_plates(s);
+  if (s.constants.kernel == Kernel::linear) join_light_faces(s);
 }
 
 namespace {

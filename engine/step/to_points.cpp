@@ -59,8 +59,7 @@ template <class Shape, int D>
 bool falls_freely(const State<D>& s, const PointKernel<D, Shape>& kernel) {
   if (s.cell[kernel.home].confined) return false;
   double depth = 0;
-  for_centers(s.grid, s.water_walls, kernel,
-              [&](int c, double w) { depth += w * s.cell[under_plates(s, kernel.home, c)].depth; });
+  for_centers(s.grid, s.water_walls, kernel, [&](int c, double w) { depth += w * s.cell[c].depth; });
   return depth < -kFreeHeight;
 }
 
@@ -187,14 +186,17 @@ void soil_from_faces(State<D>& s, std::uint32_t p, double dt, double pic, Totals
 
 template <int D>
 void publish_speeds(State<D>& s) {
+  const auto publish = [&](int d, std::size_t i) {
+    const FaceFlow& f = s.flow[d][i];
+    s.speeds[d][i] = {f.soil_old, f.soil, f.water_old, f.water};
+  };
   s.blocks.all([&](int b) {
     s.blocks.cells(s.grid, b, true, [&](int i, const Cell<D>&) {
-      for (int d = 0; d < D; ++d) {
-        const FaceFlow& f = s.flow[d][i];
-        s.speeds[d][i] = {f.soil_old, f.soil, f.water_old, f.water};
-      }
+      for (int d = 0; d < D; ++d) publish(d, i);
     });
   });
+  for (std::size_t ghost = s.grid.count(); ghost < s.flow[kPlateAxis].size(); ++ghost)
+    publish(kPlateAxis, ghost);
 }
 
 }  // namespace
