@@ -8,7 +8,7 @@ namespace {
 /// Per axis and face: 0 passes; these mirror, the second changing the sign of tangential components too.
 constexpr std::uint8_t kMirror = 1, kNoSlipMirror = 2, kCarriedMirror = 3;
 template <int D>
-using Mirrors = std::array<std::vector<std::uint8_t>, D>;
+using Mirrors = std::array<Field<std::uint8_t>, D>;
 
 /// A walk of at most one cell along each axis from a home cell, mirrored back at closed faces.
 template <int D>
@@ -81,23 +81,36 @@ int fold_center(const Grid<D>& grid, const Mirrors<D>& mirrors, int home, const 
   return agree ? landed : home;
 }
 
+/// Whether any walk from a cell meets a mirror.
+template <int D>
+bool mirror_in_reach(const Grid<D>& grid, const Mirrors<D>& mirrors, int home) {
+  constexpr int around = D == 2 ? 3 : 9;
+  for (int d = 0; d < D; ++d)
+    for (int k = 0; k < around; ++k) {
+      int face = home;
+      for (int a = 0, rest = k; a < D; ++a)
+        if (a != d) face += (rest % 3 - 1) * grid.stride[a], rest /= 3;
+      if (mirrors[d][face] || mirrors[d][face + grid.stride[d]]) return true;
+    }
+  return false;
+}
+
 /// (component, inner face, mirror) → number of the ghost.
 using GhostIndex = std::map<std::array<int, 3>, std::size_t>;
 
 }  // namespace
 
 template <int D>
-Walls<D>::Walls(const Grid<D>& grid) : blocked_(grid.count(), 1), fold_of_(grid.count(), -1) {
-  for (auto& c : closed_) c.assign(grid.count(), 0);
-  for (auto& c : separated_) c.assign(grid.count(), 0);
-  separated_next_ = port_ = carried_ = separated_;
+Walls<D>::Walls(const Grid<D>& grid) : blocked_(grid.count(), 1), fold_of_(grid.count()) {
+  for (auto* flags : {&closed_, &separated_, &separated_next_, &port_, &carried_})
+    for (auto& of_face : *flags) of_face = Field<std::uint8_t>(grid.count());
   for_each_cell(grid, [&](int i, const Cell<D>&) { blocked_[i] = 0; });
 }
 
 template <int D>
 void Walls<D>::rebuild(const Grid<D>& grid) {
   folds_.clear();
-  std::fill(fold_of_.begin(), fold_of_.end(), -1);
+  fold_of_ = Field<std::int32_t>(grid.count());
   Mirrors<D> mirrors = port_;
   for (int d = 0; d < D; ++d)
     for (std::size_t i = 0; i < closed_[d].size(); ++i)
@@ -108,6 +121,7 @@ void Walls<D>::rebuild(const Grid<D>& grid) {
   GhostIndex index;
   for (auto& ghosts : ghosts_) ghosts.clear();
   for_each_cell(grid, [&](int home, const Cell<D>&) {
+    if (!mirror_in_reach<D>(grid, mirrors, home)) return;
     CellFolds f;
     bool plain = true;
     for (int d = 0; d < D; ++d)
@@ -144,8 +158,8 @@ void Walls<D>::rebuild(const Grid<D>& grid) {
       f.center[k] = fold_center<D>(grid, mirrors, home, offset);
     }
     if (plain) return;
-    fold_of_[home] = static_cast<std::int32_t>(folds_.size());
     folds_.push_back(f);
+    fold_of_[home] = static_cast<std::int32_t>(folds_.size());
   });
 }
 

@@ -16,6 +16,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "engine/grid/field.hpp"
 #include "engine/grid/grid.hpp"
 
 namespace quicksand {
@@ -88,19 +89,21 @@ class Walls {
   bool separated(int d, int face) const { return separated_[d][face] != 0; }
   void set_separated(int d, int face, bool value) { separated_next_[d][face] = value; }
   /// Makes what was set hold from here on: between two steps, so that one step folds with one sign.
-  void commit_separated() { separated_ = separated_next_; }
+  void commit_separated(int d, int face) { separated_[d][face] = separated_next_[d][face]; }
 
   /// Recomputes the folds; call after the last close/open.
   void rebuild(const Grid<D>& grid);
   /// Folds of a cell, or null where no wall is in reach.
-  const CellFolds* folds(int cell) const { return fold_of_[cell] < 0 ? nullptr : &folds_[fold_of_[cell]]; }
+  const CellFolds* folds(int cell) const {
+    return fold_of_[cell] == 0 ? nullptr : &folds_[fold_of_[cell] - 1];
+  }
 
  private:
   static constexpr std::uint8_t kOpen = 0, kSlip = 1, kNoSlip = 2, kSymmetry = 3;
-  std::array<std::vector<std::uint8_t>, D> closed_;  ///< one of the above per face
-  std::array<std::vector<std::uint8_t>, D> separated_, separated_next_, port_, carried_;
-  std::vector<std::uint8_t> blocked_;
-  std::vector<std::int32_t> fold_of_;
+  std::array<Field<std::uint8_t>, D> closed_;  ///< one of the above per face
+  std::array<Field<std::uint8_t>, D> separated_, separated_next_, port_, carried_;
+  Field<std::uint8_t> blocked_;
+  Field<std::int32_t> fold_of_;  ///< per cell, 1 + index into folds, or 0
   std::vector<CellFolds> folds_;
   std::array<std::vector<Ghost>, D> ghosts_;
 };

@@ -1,14 +1,18 @@
 #pragma once
-// Cubes of cells as the unit of work. Blocks of one colour are far enough apart that their points write to
-// different faces, so a scatter needs no atomics, and the order of every sum is fixed by the blocks alone:
-// the result does not depend on the number of threads.
+// Cubes of cells as the unit of work, of which those near points are active: all else is empty, and nobody
+// goes there. Blocks of one colour are far enough apart that their points write to different faces, so a
+// scatter needs no atomics, and the order of every sum is fixed by the blocks alone: the result does not
+// depend on the number of threads.
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <cstdint>
+#include <iterator>
 #include <vector>
 
+#include "engine/grid/field.hpp"
 #include "engine/grid/grid.hpp"
 
 namespace quicksand {
@@ -16,7 +20,8 @@ namespace quicksand {
 /// Points of one set grouped by block, in a reproducible order.
 struct BlockList {
   std::vector<std::uint32_t> order;  ///< point indices
-  std::vector<std::uint32_t> begin;  ///< per block, size blocks + 1
+  std::vector<std::uint32_t> begin;  ///< per active block, size active + 1
+  std::vector<int> key;              ///< per point, the block that holds it
 };
 
 template <int D>
@@ -27,64 +32,109 @@ class Blocks {
 
   Blocks() = default;
   explicit Blocks(const Grid<D>& grid) : cells_(grid.cells) {
-    count_ = 1;
+    int count = 1;
     for (int d = 0; d < D; ++d) {
       blocks_[d] = (grid.cells[d] + kEdge - 1) / kEdge;
-      count_ *= blocks_[d];
+      count *= blocks_[d];
     }
-    for (int b = 0; b < count_; ++b) {
-      int color = 0;
-      for (int d = 0, rest = b; d < D; rest /= blocks_[d], ++d) color |= (rest % blocks_[d] % 2) << d;
-      of_color_[color].push_back(b);
-    }
+    number_ = Field<int>(count);
+    held_ = Field<std::uint8_t>(count);
   }
 
-  int count() const { return count_; }
+  /// Block that holds a cell, as its place in the domain.
   int block_of(const Cell<D>& c) const {
     int b = 0;
     for (int d = D - 1; d >= 0; --d) b = b * blocks_[d] + c[d] / kEdge;
     return b;
   }
+  /// A block that is always active.
+  void pin(int block) { pinned_.push_back(block); }
 
-  /// Groups points by block (stable counting sort of their indices).
-  void group(const Grid<D>& grid, const std::vector<Vec<D>>& x, BlockList& list) const {
-    std::vector<std::uint32_t>& key = scratch_;
-    key.resize(x.size());
+  /// Blocks of points, into `list.key`.
+  void locate(const Grid<D>& grid, const std::vector<Vec<D>>& x, BlockList& list) const {
+    list.key.resize(x.size());
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, x.size(), 4096), [&](const auto& range) {
-      for (std::size_t p = range.begin(); p < range.end(); ++p)
-        key[p] = static_cast<std::uint32_t>(block_of(grid.cell_of(x[p])));
+      for (std::size_t p = range.begin(); p < range.end(); ++p) list.key[p] = block_of(grid.cell_of(x[p]));
     });
-    list.begin.assign(count_ + 1, 0);
-    for (std::uint32_t k : key) ++list.begin[k + 1];
-    for (int b = 0; b < count_; ++b) list.begin[b + 1] += list.begin[b];
-    list.order.resize(x.size());
-    std::vector<std::uint32_t> next(list.begin.begin(), list.begin.end() - 1);
-    for (std::size_t p = 0; p < x.size(); ++p) list.order[next[key[p]]++] = static_cast<std::uint32_t>(p);
   }
 
-  /// f(block) for all blocks, one colour after the other.
+  /// Makes those blocks active that hold located points or are pinned, with the blocks around them: no kernel
+  /// reaches further, nor does a point in a step. Returns the blocks that are no longer active.
+  std::vector<int> activate(std::initializer_list<const BlockList*> lists) {
+    std::vector<int> holding;
+    const auto hold = [&](int b) {
+      if (!held_[b]) held_[b] = 1, holding.push_back(b);
+    };
+    for (const BlockList* list : lists)
+      for_runs(list->key, [&](int b, std::size_t, std::size_t) { hold(b); });
+    for (const int b : pinned_) hold(b);
+    std::vector<int> before = std::move(active_);
+    active_.clear();
+    for (const int b : before) number_[b] = 0;
+    for (const int b : holding) {
+      held_[b] = 0;
+      add_around(b);
+    }
+    std::sort(active_.begin(), active_.end());
+    for (auto& of_color : of_color_) of_color.clear();
+    for (int i = 0; i < count(); ++i) {
+      number_[active_[i]] = i + 1;
+      of_color_[color_of(active_[i])].push_back(i);
+    }
+    std::vector<int> left;
+    std::set_difference(before.begin(), before.end(), active_.begin(), active_.end(),
+                        std::back_inserter(left));
+    return left;
+  }
+
+  /// Groups located points by active block (stable counting sort of their indices).
+  void group(BlockList& list) const {
+    list.begin.assign(count() + 1, 0);
+    for_runs(list.key, [&](int b, std::size_t from, std::size_t to) {
+      list.begin[number_[b]] += static_cast<std::uint32_t>(to - from);
+    });
+    for (int i = 0; i < count(); ++i) list.begin[i + 1] += list.begin[i];
+    list.order.resize(list.key.size());
+    std::vector<std::uint32_t> next(list.begin.begin(), list.begin.end() - 1);
+    for_runs(list.key, [&](int b, std::size_t from, std::size_t to) {
+      std::uint32_t& at = next[number_[b] - 1];
+      for (std::size_t p = from; p < to; ++p) list.order[at++] = static_cast<std::uint32_t>(p);
+    });
+  }
+
+  /// Active blocks. From here on a block is its number among them, in the order of their places.
+  int count() const { return static_cast<int>(active_.size()); }
+  /// Number of an active block, from its place; −1 if it is not active.
+  int number_of(int block) const { return number_[block] - 1; }
+
+  /// f(number) for all active blocks, one colour after the other.
   template <class F>
   void by_color(F&& f) const {
     for (const auto& blocks : of_color_) parallel(blocks.size(), [&](std::size_t i) { f(blocks[i]); });
   }
-  /// f(block) for all blocks in any order.
+  /// f(number) for all active blocks in any order.
   template <class F>
   void all(F&& f) const {
-    parallel(count_, [&](std::size_t i) { f(static_cast<int>(i)); });
+    parallel(active_.size(), [&](std::size_t i) { f(static_cast<int>(i)); });
   }
-  /// Σ f(block) in a fixed order.
+  /// Σ f(number) in a fixed order.
   template <class T, class F>
   T sum(F&& f) const {
-    std::vector<T> partial(count_);
+    std::vector<T> partial(active_.size());
     all([&](int b) { partial[b] = f(b); });
     T total{};
     for (const T& p : partial) total += p;
     return total;
   }
-  /// f(index, cell) for the cells of a block, and for the faces on its upper sides if it is a last block
-  /// (`with_upper_faces`), so that every face of the domain is visited once.
+  /// f(index, cell) for the cells of an active block, and for the faces on its upper sides if it is a last
+  /// block (`with_upper_faces`), so that every face of the domain is visited once.
   template <class F>
-  void cells(const Grid<D>& grid, int block, bool with_upper_faces, F&& f) const {
+  void cells(const Grid<D>& grid, int number, bool with_upper_faces, F&& f) const {
+    cells_at(grid, active_[number], with_upper_faces, f);
+  }
+  /// The same for a block by its place.
+  template <class F>
+  void cells_at(const Grid<D>& grid, int block, bool with_upper_faces, F&& f) const {
     Cell<D> low, high;
     for (int d = 0, rest = block; d < D; rest /= blocks_[d], ++d) {
       low[d] = rest % blocks_[d] * kEdge;
@@ -109,11 +159,42 @@ class Blocks {
       for (std::size_t i = range.begin(); i < range.end(); ++i) f(i);
     });
   }
+  /// f(key, from, to) for stretches of equal keys, which are long where points lie in the order of blocks.
+  template <class F>
+  static void for_runs(const std::vector<int>& key, F&& f) {
+    for (std::size_t from = 0, to; from < key.size(); from = to) {
+      for (to = from + 1; to < key.size() && key[to] == key[from];) ++to;
+      f(key[from], from, to);
+    }
+  }
+  int color_of(int block) const {
+    int color = 0;
+    for (int d = 0; d < D; block /= blocks_[d], ++d) color |= (block % blocks_[d] % 2) << d;
+    return color;
+  }
+  /// Adds a block and those around it to the active ones, once each.
+  void add_around(int block) {
+    Cell<D> at;
+    for (int d = 0, rest = block; d < D; rest /= blocks_[d], ++d) at[d] = rest % blocks_[d];
+    for (int k = 0, around = D == 2 ? 9 : 27; k < around; ++k) {
+      int b = 0, scale = 1;
+      bool inside = true;
+      for (int d = 0, rest = k; d < D; rest /= 3, scale *= blocks_[d], ++d) {
+        const int c = at[d] + rest % 3 - 1;
+        inside = inside && c >= 0 && c < blocks_[d];
+        b += c * scale;
+      }
+      if (!inside || number_[b]) continue;
+      number_[b] = 1;
+      active_.push_back(b);
+    }
+  }
 
   Cell<D> cells_{}, blocks_{};
-  int count_ = 0;
+  std::vector<int> active_, pinned_;  ///< places
+  Field<int> number_;                 ///< per place, 1 + number of an active block; 0: not active
+  Field<std::uint8_t> held_;          ///< scratch
   std::array<std::vector<int>, kColors> of_color_;
-  mutable std::vector<std::uint32_t> scratch_;
 };
 
 }  // namespace quicksand

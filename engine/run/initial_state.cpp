@@ -28,7 +28,7 @@ std::vector<int> connected_water(const State<D>& s, int seed, std::vector<char>&
       for (int side : {0, 1}) {
         const int face = found[k] + side * s.grid.stride[d],
                   other = found[k] + (2 * side - 1) * s.grid.stride[d];
-        if (s.water_walls.closed(d, face) || seen[other] || s.cell[other].unknown < 0) continue;
+        if (s.water_walls.closed(d, face) || seen[other] || !s.cell[other].wet()) continue;
         seen[other] = 1;
         found.push_back(other);
       }
@@ -53,7 +53,7 @@ double water_level(const State<D>& s, const std::vector<int>& cells) {
         if (submerged(s, d, f))
           reservoir = std::max(reservoir, s.reservoirs[port_at(s, d, f)->reservoir].level(s.time));
     const int face = i + side * s.grid.stride[up], other = i + (2 * side - 1) * s.grid.stride[up];
-    if (s.water_walls.closed(up, face) || s.cell[other].unknown >= 0 || submerged(s, up, face)) continue;
+    if (s.water_walls.closed(up, face) || s.cell[other].wet() || submerged(s, up, face)) continue;
     surface = std::max(surface, z + surface_distance(s.cell[i].depth, s.cell[other].depth) * s.grid.h);
   }
   return std::isfinite(surface) ? surface : std::isfinite(reservoir) ? reservoir : highest;
@@ -96,7 +96,7 @@ void set_k0_stress(const Scene& scene, State<D>& s) {
       if (a != b || carries_nothing(s, order[k - 1], p, spacing)) above = 0;
     }
     const SoilMaterial& m = s.constants.soils[soil.soil[p]];
-    const bool wet = s.cell[s.grid.index(s.grid.cell_of(soil.x[p]))].unknown >= 0;
+    const bool wet = s.cell[s.grid.index(s.grid.cell_of(soil.x[p]))].wet();
     const double density = (1 - soil.porosity[p]) * (m.grain_density - (wet ? s.constants.water_density : 0));
     const double weight = std::max(0.0, density * g * spacing);
     const double vertical = above + 0.5 * weight;
@@ -117,7 +117,7 @@ void set_initial_pressure(const Scene& scene, State<D>& s) {
   const double weight = s.constants.water_density * std::sqrt(g);
   std::vector<char> seen(s.grid.count(), 0);
   for_each_cell(s.grid, [&](int i, const Cell<D>&) {
-    if (s.cell[i].unknown < 0 || seen[i]) return;
+    if (!s.cell[i].wet() || seen[i]) return;
     const std::vector<int> cells = connected_water(s, i, seen);
     const double level = scene.initial.water_table.value_or(water_level(s, cells));
     for (int c : cells) {

@@ -44,13 +44,13 @@ Vec<D> velocity_at(const State<D>& s, const Walls<D>& walls, const Vec<D>& x, Ve
 template <int D>
 double pressure_at(const State<D>& s, const Vec<D>& x) {
   const int cell = s.grid.index(s.grid.cell_of(x));
-  if (s.cell[cell].unknown >= 0) return from_wet_cell<D>(s, cell, x);
+  if (s.cell[cell].wet()) return from_wet_cell<D>(s, cell, x);
   // Up to half a cell of water lies above the last wet centre.
   double p = 0;
   for (int d = 0; d < D; ++d)
     for (int side : {0, 1}) {
       const int face = cell + side * s.grid.stride[d], other = cell + (2 * side - 1) * s.grid.stride[d];
-      if (!s.water_walls.closed(d, face) && s.cell[other].unknown >= 0)
+      if (!s.water_walls.closed(d, face) && s.cell[other].wet())
         p = std::max(p, from_wet_cell<D>(s, other, x));
     }
   return p;

@@ -1,6 +1,7 @@
 #include "engine/run/setup.hpp"
 
 #include <cmath>
+#include <set>
 
 #include "engine/grid/scene_grid.hpp"
 #include "engine/points/seeding.hpp"
@@ -51,10 +52,10 @@ Plate<D> make_plate(const Load& load) {
 template <int D>
 void make_ports(const std::vector<PortFace>& faces, State<D>& s) {
   if (faces.empty()) return;
-  for (auto& of_face : s.port_of) of_face.assign(s.grid.count(), -1);
+  for (auto& of_face : s.port_of) of_face = Field<std::int32_t>(s.grid.count());
   double g2 = 0;
   for (double c : s.constants.gravity) g2 += c * c;
-  std::vector<char> near(s.blocks.count(), 0);
+  std::set<int> near;
   for (const PortFace& f : faces) {
     Port<D> port{.d = f.d, .face = f.face, .inward = f.inward, .reservoir = f.reservoir};
     const Cell<D> cell = s.grid.cell(f.inward > 0 ? f.face : f.face - s.grid.stride[f.d]);
@@ -62,17 +63,17 @@ void make_ports(const std::vector<PortFace>& faces, State<D>& s) {
     middle[f.d] -= 0.5 * f.inward * s.grid.h;
     if (g2 > 0)
       for (int d = 0; d < D; ++d) port.elevation -= s.constants.gravity[d] / std::sqrt(g2) * middle[d];
-    s.port_of[f.d][f.face] = static_cast<std::int32_t>(s.ports.size());
     s.ports.push_back(port);
+    s.port_of[f.d][f.face] = static_cast<std::int32_t>(s.ports.size());
     for (int k = 0; k < power(3, D); ++k) {
       Cell<D> c = cell;
       for (int d = 0, rest = k; d < D; ++d, rest /= 3)
         c[d] = std::clamp(c[d] + rest % 3 - 1, 0, s.grid.cells[d] - 1);
-      near[s.blocks.block_of(c)] = 1;
+      near.insert(s.blocks.block_of(c));
     }
   }
-  for (int b = 0; b < s.blocks.count(); ++b)
-    if (near[b]) s.port_blocks.push_back(b);
+  s.port_blocks.assign(near.begin(), near.end());
+  for (const int block : near) s.blocks.pin(block);
 }
 
 /// Levels that reservoirs go to in a stage; those it does not name stay where they are.
@@ -154,16 +155,16 @@ State<D> make_state(const Scene& scene) {
   s.water = std::move(points.water);
   keep_discharge(s, s.soil), keep_discharge(s, s.fixed);
   for (int d = 0; d < D; ++d) {
-    s.sums[d].assign(s.grid.count(), {});
-    s.image[d].assign(s.grid.count(), {});
-    s.flow[d].assign(s.grid.count(), {});
-    s.speeds[d].assign(s.grid.count(), {});
+    s.sums[d] = Field<FaceSums>(s.grid.count());
+    s.image[d] = Field<FaceImage>(s.grid.count());
+    s.flow[d] = Field<FaceFlow>(s.grid.count());
+    s.speeds[d] = Field<FaceSpeeds>(s.grid.count());
+    if (s.constants.kernel == Kernel::linear) s.follower[d] = Field<Follower>(s.grid.count());
   }
-  if (s.constants.kernel == Kernel::linear)
-    for (auto& followers : s.follower) followers.assign(s.grid.count(), {});
-  s.cell_sums.assign(s.grid.count(), {});
-  s.cell.assign(s.grid.count(), {});
-  s.pressure.assign(s.grid.count(), 0);
+  s.cell_sums = Field<CellSums>(s.grid.count());
+  s.cell = Field<CellState>(s.grid.count());
+  s.pressure = Field<double>(s.grid.count());
+  s.pressure_old = Field<double>(s.grid.count());
   for (const Load& load : scene.loads)
     if (load.kind == Load::Kind::traction)
       s.loads.push_back(make_load<D>(scene, load, s));

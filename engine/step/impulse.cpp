@@ -80,7 +80,7 @@ void add_damping(const State<D>& s, int d, int face, Damped<D>& sum) {
 template <int D>
 double momentum_beside_leader(const State<D>& s, int d, int face) {
   const Follower& f = s.follower[d][face];
-  return f.leader < 0 ? 0 : f.mass * (f.velocity - s.flow[d][leader_of(s, d, face)].soil_old);
+  return f.leader == 0 ? 0 : f.mass * (f.velocity - s.flow[d][leader_of(s, d, face)].soil_old);
 }
 
 template <int D>

@@ -28,11 +28,11 @@ void for_neighbours(const State<D>& s, int d, int face, F&& f) {
     }
 }
 
-/// The heaviest neighbour, if `face` is light beside it; or −1. A closed face stays with its wall.
+/// The heaviest neighbour, if `face` is light beside it; or 0. A closed face stays with its wall.
 template <int D>
 int heavy_neighbour(const State<D>& s, int d, int face) {
-  if (s.soil_walls.closed(d, face)) return -1;
-  int heaviest = -1;
+  if (s.soil_walls.closed(d, face)) return 0;
+  int heaviest = 0;
   double mass = s.sums[d][face].soil_mass / LinearHat::light_part;
   for_neighbours(s, d, face, [&](int other) {
     if (s.sums[d][other].soil_mass > mass) mass = s.sums[d][other].soil_mass, heaviest = other;
@@ -75,7 +75,7 @@ void for_each_face(const State<D>& s, F&& f) {
 
 template <int D>
 int leader_of(const State<D>& s, int d, int face) {
-  while (s.follower[d][face].leader >= 0) face = s.follower[d][face].leader;
+  while (s.follower[d][face].leader != 0) face = s.follower[d][face].leader;
   return face;
 }
 
@@ -84,15 +84,15 @@ void join_light_faces(State<D>& s) {
   for_each_face<D>(s, [&](int d, int face) {
     const FaceSums& sums = s.sums[d][face];
     const int leader = heavy_neighbour(s, d, face);
-    const FaceSums& moving = sums.soil_mass > 0 || leader < 0 ? sums : s.sums[d][leader];
+    const FaceSums& moving = sums.soil_mass > 0 || leader == 0 ? sums : s.sums[d][leader];
     s.follower[d][face] = {leader, sums.soil_mass - s.image[d][face].soil,
-                           leader < 0 ? 0 : moving.soil_momentum / moving.soil_mass};
+                           leader == 0 ? 0 : moving.soil_momentum / moving.soil_mass};
   });
   for_each_face<D>(s, [&](int d, int face) {
-    if (s.follower[d][face].leader < 0) gather(s, d, face, face);
+    if (s.follower[d][face].leader == 0) gather(s, d, face, face);
   });
   for_each_face<D>(s, [&](int d, int face) {
-    if (s.follower[d][face].leader < 0) return;
+    if (s.follower[d][face].leader == 0) return;
     const FaceSums all = s.sums[d][face];
     s.sums[d][face] = {};
     s.sums[d][face].water_mass = all.water_mass, s.sums[d][face].water_momentum = all.water_momentum;
@@ -104,7 +104,7 @@ template <int D>
 void follow_leaders(State<D>& s) {
   for_each_face<D>(s, [&](int d, int face) {
     const Follower& f = s.follower[d][face];
-    if (f.leader < 0) return;
+    if (f.leader == 0) return;
     const FaceFlow& leader = s.flow[d][leader_of(s, d, face)];
     s.flow[d][face].soil_old = f.velocity;
     s.flow[d][face].soil = f.velocity + leader.soil - leader.soil_old;

@@ -9,6 +9,9 @@ namespace quicksand {
 template <int D>
 struct StepReport;
 
+/// Places of the points → `blocks`, `soil_blocks`, `water_blocks`.
+template <int D>
+void activate_blocks(State<D>& s);
 /// Points → the same in the order of their cells, every so many steps.
 template <int D>
 void sort_points(State<D>& s);
@@ -90,8 +93,8 @@ void pass_ports(State<D>& s, StepReport<D>& report);
 /// Port of a face, or null.
 template <int D>
 const Port<D>* port_at(const State<D>& s, int d, int face) {
-  if (s.ports.empty() || s.port_of[d][face] < 0) return nullptr;
-  return &s.ports[s.port_of[d][face]];
+  if (s.ports.empty() || s.port_of[d][face] == 0) return nullptr;
+  return &s.ports[s.port_of[d][face] - 1];
 }
 /// Whether a face has a reservoir's water on its other side.
 template <int D>
@@ -130,7 +133,7 @@ inline double fill_of(double water, double grains, double soil_bulk) {
 /// cells (pressures `inner`), or from a wet cell to p = 0 at the water surface; at a closed face the weight
 /// of still water.
 template <int D>
-double pressure_gradient(const State<D>& s, const std::vector<double>& inner, int d, int face);
+double pressure_gradient(const State<D>& s, const Field<double>& inner, int d, int face);
 template <int D>
 double pressure_gradient(const State<D>& s, int d, int face) {
   return pressure_gradient(s, s.pressure, d, face);

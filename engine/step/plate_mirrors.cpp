@@ -175,8 +175,11 @@ void make_ghosts(State<D>& s) {
   s.water_walls.rebuild(s.grid);
   const auto& ghosts = s.water_walls.ghosts(kAlong);
   const std::size_t count = s.grid.count() + ghosts.size();
-  s.sums[kAlong].resize(count), s.image[kAlong].resize(count), s.flow[kAlong].resize(count);
-  s.speeds[kAlong].resize(count);
+  const auto extend = [&](auto& field) {  // once: room that is not touched takes no memory
+    field.reserve(2 * s.grid.count());
+    field.resize(count);
+  };
+  extend(s.sums[kAlong]), extend(s.image[kAlong]), extend(s.flow[kAlong]), extend(s.speeds[kAlong]);
   for (std::size_t k = 0; k < ghosts.size(); ++k) {
     s.sums[kAlong][s.grid.count() + k] = {};
     s.image[kAlong][s.grid.count() + k] = {};

@@ -26,12 +26,12 @@ double area(const State<D>& s, int face) {
 
 /// Σ b p over the cells beside the row, N upward.
 template <int D>
-double push(const State<D>& s, const Plate<D>& plate, const std::vector<double>& pressure) {
+double push(const State<D>& s, const Plate<D>& plate, const Field<double>& pressure) {
   double sum = 0;
   for (int face : plate.row) {
     const int below = face - s.grid.stride[kAlong];
-    if (s.cell[below].unknown >= 0) sum += area(s, face) * pressure[below];
-    if (s.cell[face].unknown >= 0) sum -= area(s, face) * pressure[face];
+    if (s.cell[below].wet()) sum += area(s, face) * pressure[below];
+    if (s.cell[face].wet()) sum -= area(s, face) * pressure[face];
   }
   return sum;
 }
@@ -51,7 +51,7 @@ void hold_row(State<D>& s, const Plate<D>& plate) {
 template <int D>
 double weight(const State<D>& s, int face) {
   const FaceSums& sums = s.sums[kAlong][face];
-  const bool below = s.cell[face - s.grid.stride[kAlong]].unknown >= 0, above = s.cell[face].unknown >= 0;
+  const bool below = s.cell[face - s.grid.stride[kAlong]].wet(), above = s.cell[face].wet();
   const double rho = s.constants.water_density;
   double mass = sums.soil_mass + sums.water_mass;
   if (below) mass -= rho * sums.grains;
@@ -104,7 +104,7 @@ void press_plates(State<D>& s, double dt) {
     typename PressureSystem<D>::Piston piston;
     piston.response = dt / plate.mass * (D == 2 ? 1 : s.grid.h);
     const auto add = [&](int cell, double weight) {
-      if (s.cell[cell].unknown < 0) return;
+      if (!s.cell[cell].wet()) return;
       piston.cell.push_back(cell);
       piston.weight.push_back(weight);
     };
@@ -118,7 +118,7 @@ void press_plates(State<D>& s, double dt) {
 
 template <int D>
 void settle_plates(State<D>& s, double dt) {
-  const std::vector<double>& pressure = s.constants.explicit_pressure ? s.pressure_old : s.pressure;
+  const Field<double>& pressure = s.constants.explicit_pressure ? s.pressure_old : s.pressure;
   for (Plate<D>& plate : s.plates) {
     if (!plate.active || !plate.touches) continue;
     const double pushed = push(s, plate, pressure);

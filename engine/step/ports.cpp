@@ -35,7 +35,7 @@ int inner_cell(const State<D>& s, const Port<D>& port) {
 template <int D>
 bool seeps(const State<D>& s, const Port<D>& port) {
   const int cell = inner_cell(s, port);
-  if (s.cell[cell].unknown < 0) return true;
+  if (!s.cell[cell].wet()) return true;
   if (port.open) return port.inward * s.flow[port.d][port.face].water <= 0;
   const double still = s.constants.water_density * s.constants.gravity[port.d] * port.inward;
   const double at_face = s.pressure[cell] - 0.5 * s.grid.h * still;
@@ -115,7 +115,7 @@ class WaterPass {
     x[port.d] = s_.grid.center(s_.grid.cell(inner_cell(s_, port)))[port.d];
     const Cell<D> c = s_.grid.cell_of(x);
     const int face = s_.grid.index(c) + (port.inward > 0 ? 0 : s_.grid.stride[port.d]);
-    const int found = s_.port_of[port.d][face];
+    const int found = s_.port_of[port.d][face] - 1;
     return found >= 0 && s_.ports[found].open ? found : -1;
   }
 
@@ -149,15 +149,17 @@ class WaterPass {
   void catch_crossing() {
     caught_.assign(s_.water.size(), 0);
     for (const Straddler& q : s_.straddlers) caught_[q.point] = 1;
-    for (const int b : s_.port_blocks)
+    for (const int place : s_.port_blocks) {
+      const int b = s_.blocks.number_of(place);
       for (auto i = s_.water_blocks.begin[b]; i < s_.water_blocks.begin[b + 1]; ++i)
         catch_point(s_.water_blocks.order[i]);
+    }
   }
   void catch_point(std::uint32_t p) {
     const int cell = s_.grid.index(s_.grid.cell_of(s_.water.x[p]));
     for (int d = 0; d < D; ++d)
       for (int side : {0, 1}) {
-        const int k = s_.port_of[d][cell + side * s_.grid.stride[d]];
+        const int k = s_.port_of[d][cell + side * s_.grid.stride[d]] - 1;
         if (k < 0 || caught_[p] || !s_.ports[k].open) continue;
         const Port<D>& port = s_.ports[k];
         const double depth = port.inward * (s_.water.x[p][d] - plane_of(s_, port)) / spacing(s_);

@@ -39,17 +39,28 @@ double drift_rate(const State<D>& s, int cell) {
   return std::clamp(beyond, -kDriftLimit, kDriftLimit) * rate;
 }
 
+/// Rows block by block, so that neighbours in space are near in memory.
 template <int D>
 void number_rows(State<D>& s, PressureSystem<D>& m) {
-  m.cell.clear();
-  for_each_cell(s.grid, [&](int i, const Cell<D>&) {
-    if (s.cell[i].unknown < 0) return;
-    s.cell[i].unknown = static_cast<int>(m.cell.size());
-    m.cell.push_back(i);
+  std::vector<int> end(s.blocks.count() + 1, 0);
+  const auto wet_cells = [&](int b, auto&& f) {
+    s.blocks.cells(s.grid, b, false, [&](int i, const Cell<D>&) {
+      if (s.cell[i].wet()) f(i);
+    });
+  };
+  s.blocks.all([&](int b) { wet_cells(b, [&](int) { ++end[b + 1]; }); });
+  for (int b = 0; b < s.blocks.count(); ++b) end[b + 1] += end[b];
+  m.cell.resize(end.back());
+  s.blocks.all([&](int b) {
+    int row = end[b];
+    wet_cells(b, [&](int i) {
+      m.cell[row] = i;
+      s.cell[i].row = ++row;
+    });
   });
   for (auto& piston : m.pistons) {
     piston.row.clear();
-    for (int cell : piston.cell) piston.row.push_back(s.cell[cell].unknown);
+    for (int cell : piston.cell) piston.row.push_back(s.cell[cell].row - 1);
   }
 }
 
@@ -85,12 +96,12 @@ void assemble(State<D>& s, PressureSystem<D>& m, double dt) {
             rhs += 2 * beta * port->pressure;
             continue;
           }
-          if (o.unknown < 0) {
+          if (!o.wet()) {
             diagonal += beta / surface_distance(c.depth, o.depth);
             continue;
           }
           diagonal += beta;
-          (side ? m.upper : m.lower)[d][r] = o.unknown;
+          (side ? m.upper : m.lower)[d][r] = o.row - 1;
           if (side) m.coupling[d][r] = -beta;
         }
       }

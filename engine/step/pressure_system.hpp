@@ -7,7 +7,7 @@ namespace quicksand {
 /// Symmetric positive definite system on the wet cells, one entry per row for each upper neighbour.
 template <int D>
 struct PressureSystem {
-  std::vector<int> cell;                        ///< row → cell, increasing
+  std::vector<int> cell;                        ///< row → cell, block by block
   std::vector<double> diagonal, rhs, solution;  ///< 1/(Pa·s), 1/s, Pa
   std::array<std::vector<int>, D> upper;        ///< row of the neighbour in +d, or −1
   std::array<std::vector<int>, D> lower;        ///< row of the neighbour in −d, or −1

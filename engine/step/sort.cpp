@@ -15,8 +15,8 @@ constexpr long kSortInterval = 64;
 
 /// Order of a set's points by block, and by cell within a block.
 template <int D>
-std::vector<std::uint32_t> order_by_cell(const State<D>& s, const std::vector<Vec<D>>& x, BlockList& list) {
-  s.blocks.group(s.grid, x, list);
+std::vector<std::uint32_t> order_by_cell(const State<D>& s, const std::vector<Vec<D>>& x,
+                                         const BlockList& list) {
   std::vector<std::uint32_t> order = list.order;
   std::vector<int> cell(x.size());
   for (std::size_t p = 0; p < x.size(); ++p) cell[p] = s.grid.index(s.grid.cell_of(x[p]));
@@ -43,6 +43,7 @@ void reorder(Set& set, const std::vector<std::uint32_t>& order) {
 template <int D>
 void sort_points(State<D>& s) {
   if (s.steps++ % kSortInterval != 0) return;
+  activate_blocks(s);
   reorder(s.soil, order_by_cell<D>(s, s.soil.x, s.soil_blocks));
   const std::vector<std::uint32_t> order = order_by_cell<D>(s, s.water.x, s.water_blocks);
   reorder(s.water, order);

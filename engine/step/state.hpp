@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/grid/field.hpp"
 #include "engine/grid/kernel_volumes.hpp"
 #include "engine/grid/walls.hpp"
 #include "engine/materials/stability.hpp"
@@ -40,7 +41,7 @@ struct FaceImage {
 
 /// A face that holds next to nothing of the grains, and accelerates with a neighbour that does.
 struct Follower {
-  int leader = -1;      ///< face, which may follow another itself; −1: the face moves on its own
+  int leader = 0;       ///< face, which may follow another itself; 0: the face moves on its own
   double mass = 0;      ///< kg, that its points left there, less mirror images
   double velocity = 0;  ///< m/s, their mean
 };
@@ -63,7 +64,7 @@ struct FaceFlow {
   /// –, part of the soil of a face just above the water surface that lies below it, as far as kernels reach:
   /// it shares the pressure gradient of the face at the surface, `soaked_by`.
   double soaked = 0;
-  int soaked_by = -1;
+  int soaked_by = 0;
 
   double drag = 0;                             ///< N·s/m⁴ per cell volume, between the phases
   double fixed_drag = 0;                       ///< N·s/m⁴ on the water, of grains that do not move
@@ -89,8 +90,9 @@ struct CellState {
   double depth = -1.5;    ///< cells from the water surface, positive in water, within ±1.5
   double excess = 0;      ///< –, volume of water and grains beyond the room, where fully wet
   double n = 1;           ///< –, room for water
-  int unknown = -1;       ///< row in the pressure system; −1: air or wall
+  int row = 0;            ///< 1 + row in the pressure system; 0: air or wall
   bool confined = false;  ///< wet, and no air in the cells around
+  bool wet() const { return row > 0; }
 };
 
 /// Counters of everything that is done to the state other than by the equations.
@@ -240,22 +242,23 @@ struct State {
   std::vector<Port<D>> ports;
   std::vector<ReservoirState> reservoirs;
   std::vector<Straddler> straddlers;
-  std::vector<int> port_blocks;  ///< blocks from which a point can reach a port in one step
-  std::array<std::vector<std::int32_t>, D>
-      port_of;  ///< per face, index into ports or −1; empty without ports
+  std::vector<int> port_blocks;  ///< places of the blocks from which a point can reach a port in one step
+  /// Per face, 1 + index into ports, or 0. Empty without ports.
+  std::array<Field<std::int32_t>, D> port_of;
 
+  // On the whole lattice, but only what lies in active blocks is ever other than zeros.
   // Behind the faces of component y, sums, image, flow and speeds hold the ghosts of `water_walls`.
-  std::array<std::vector<FaceSums>, D> sums;
-  std::array<std::vector<FaceImage>, D> image;
-  std::array<std::vector<Follower>, D> follower;  ///< linear kernel only
-  std::array<std::vector<FaceFlow>, D> flow;
-  std::array<std::vector<FaceSpeeds>, D> speeds;  ///< of `flow`, once it is final
-  std::array<std::vector<FixedFace>, D> fixed_face;
-  std::vector<CellSums> cell_sums;
-  std::vector<CellSums> fixed_cell;
-  std::vector<CellState> cell;
-  std::vector<double> pressure;      ///< Pa per cell; 0 in air
-  std::vector<double> pressure_old;  ///< Pa, at the start of the step
+  std::array<Field<FaceSums>, D> sums;
+  std::array<Field<FaceImage>, D> image;
+  std::array<Field<Follower>, D> follower;  ///< linear kernel only
+  std::array<Field<FaceFlow>, D> flow;
+  std::array<Field<FaceSpeeds>, D> speeds;  ///< of `flow`, once it is final
+  std::array<Field<FixedFace>, D> fixed_face;
+  Field<CellSums> cell_sums;
+  Field<CellSums> fixed_cell;
+  Field<CellState> cell;
+  Field<double> pressure;      ///< Pa per cell; 0 in air
+  Field<double> pressure_old;  ///< Pa, at the start of the step
   PressureSystem<D> pressure_system;
   Multigrid<D> multigrid;  ///< of the pressure system
 

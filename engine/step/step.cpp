@@ -42,11 +42,17 @@ class Stopwatch {
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
+template <int D>
+void copy_pressure(const State<D>& s, const Field<double>& from, Field<double>& to) {
+  s.blocks.all(
+      [&](int b) { s.blocks.cells(s.grid, b, false, [&](int i, const Cell<D>&) { to[i] = from[i]; }); });
+}
+
 /// Velocities on the faces at the end of the step, and the pressure that goes with them. Returns the time
 /// that the step may take; 0 if there is none.
 template <int D>
 double solve_velocities(State<D>& s, double dt, PressureReport& report, Stopwatch& clock) {
-  s.pressure_old = s.pressure;
+  copy_pressure(s, s.pressure, s.pressure_old);
   for (int cuts = 0; cuts <= kMostCuts; ++cuts, dt *= 0.5) {
     predict_velocities(s, dt);  // both momentum balances, drag inside
     press_plates(s, dt);        // what plates hold moves as one
@@ -58,7 +64,7 @@ double solve_velocities(State<D>& s, double dt, PressureReport& report, Stopwatc
     const bool fits = !travels_too_far(s, dt);
     clock.lap(Phase::velocities);
     if (fits) return dt;
-    s.pressure = s.pressure_old;
+    copy_pressure(s, s.pressure_old, s.pressure);
     ++s.interventions.cut_steps;
   }
   return 0;

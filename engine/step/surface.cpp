@@ -41,21 +41,21 @@ void find_surface(State<D>& s) {
       c.n = std::max(1 - sums.grains / volume, kMinRoom);
       c.fill = fill_of(sums.water / volume, sums.grains / volume, sums.soil_bulk / volume);
       c.depth = with_kernel(s.constants.kernel, [&](auto shape) { return depth_of_fill(shape, c.fill); });
-      c.unknown = c.depth > kMinSurfaceDistance ? 0 : -1;
-      if (c.unknown < 0) s.pressure[i] = 0;
+      c.row = c.depth > kMinSurfaceDistance;
+      if (!c.wet()) s.pressure[i] = 0;
     });
   });
   // Drift is measured only where no air is in reach of the kernel.
   s.blocks.all([&](int b) {
     s.blocks.cells(s.grid, b, false, [&](int i, const Cell<D>&) {
       CellState& c = s.cell[i];
-      if (c.unknown < 0) return;
+      if (!c.wet()) return;
       const double excess = (s.cell_sums[i].water + s.cell_sums[i].grains) / s.volume.cell(i) - 1;
       c.confined = true;
       for (int d = 0; d < D; ++d)
         for (int side : {0, 1}) {
           const int face = i + side * s.grid.stride[d], other = i + (2 * side - 1) * s.grid.stride[d];
-          if (s.water_walls.closed(d, face) || s.cell[other].unknown >= 0 || in_plate(s, d, face)) continue;
+          if (s.water_walls.closed(d, face) || s.cell[other].wet() || in_plate(s, d, face)) continue;
           if (!submerged(s, d, face)) c.confined = false;
         }
       if (excess > 0 || c.confined) c.excess = excess;

@@ -87,15 +87,14 @@ void water_to_faces(State<D>& s, std::uint32_t p) {
 template <int D>
 void points_to_faces(State<D>& s) {
   if (s.plates_left_rows) mark_plates(s);
-  s.soil_walls.commit_separated();
-  s.blocks.group(s.grid, s.soil.x, s.soil_blocks);
-  s.blocks.group(s.grid, s.water.x, s.water_blocks);
+  activate_blocks(s);
   const bool has_fixed = s.fixed.size() > 0;
   s.blocks.all([&](int b) {
     s.blocks.cells(s.grid, b, true, [&](int i, const Cell<D>&) {
       for (int d = 0; d < D; ++d) {
         s.sums[d][i] = {};
         s.image[d][i] = {};
+        s.soil_walls.commit_separated(d, i);
       }
       s.cell_sums[i] = has_fixed ? s.fixed_cell[i] : CellSums{};
     });
@@ -118,8 +117,8 @@ namespace {
 
 template <class Shape, int D>
 void measure_fixed_with(State<D>& s) {
-  for (auto& f : s.fixed_face) f.assign(s.grid.count(), {});
-  s.fixed_cell.assign(s.grid.count(), {});
+  for (auto& f : s.fixed_face) f = Field<FixedFace>(s.grid.count());
+  s.fixed_cell = Field<CellSums>(s.grid.count());
   for (std::size_t p = 0; p < s.fixed.size(); ++p) {
     const SoilMaterial& material = s.constants.soils[s.fixed.soil[p]];
     const PointKernel<D, Shape> kernel(s.grid, s.fixed.x[p]);

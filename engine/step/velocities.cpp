@@ -9,19 +9,19 @@
 namespace quicksand {
 
 template <int D>
-double pressure_gradient(const State<D>& s, const std::vector<double>& inner, int d, int face) {
+double pressure_gradient(const State<D>& s, const Field<double>& inner, int d, int face) {
   const int low = face - s.grid.stride[d], high = face;
   const CellState &a = s.cell[low], &b = s.cell[high];
   if (s.water_walls.closed(d, face) || in_plate(s, d, face))
-    return a.unknown >= 0 || b.unknown >= 0 ? s.constants.water_density * s.constants.gravity[d] : 0;
+    return a.wet() || b.wet() ? s.constants.water_density * s.constants.gravity[d] : 0;
   const double inverse_h = s.grid.inverse_h;
   if (const Port<D>* port = port_at(s, d, face)) {
     const double inside = s.pressure[port->inward > 0 ? high : low];  // 0 in air
     return port->inward * (inside - port->pressure) * 2 * inverse_h;
   }
-  if (a.unknown >= 0 && b.unknown >= 0) return (inner[high] - inner[low]) * inverse_h;
-  if (a.unknown >= 0) return -s.pressure[low] * inverse_h / surface_distance(a.depth, b.depth);
-  if (b.unknown >= 0) return s.pressure[high] * inverse_h / surface_distance(b.depth, a.depth);
+  if (a.wet() && b.wet()) return (inner[high] - inner[low]) * inverse_h;
+  if (a.wet()) return -s.pressure[low] * inverse_h / surface_distance(a.depth, b.depth);
+  if (b.wet()) return s.pressure[high] * inverse_h / surface_distance(b.depth, a.depth);
   return 0;
 }
 
@@ -128,10 +128,10 @@ template <int D>
 double wet_part(const State<D>& s, int d, int face) {
   const int step = s.grid.stride[d];
   const auto dry = [&](int from, int to, int between) {
-    return s.cell[from].unknown >= 0 && s.cell[to].unknown < 0 && !s.water_walls.closed(d, between) &&
+    return s.cell[from].wet() && !s.cell[to].wet() && !s.water_walls.closed(d, between) &&
            !submerged(s, d, between);
   };
-  const bool inside = s.cell[face].unknown >= 0 && s.cell[face - step].unknown >= 0;
+  const bool inside = s.cell[face].wet() && s.cell[face - step].wet();
   if (inside && !dry(face, face + step, face + step) && !dry(face - step, face - 2 * step, face - step))
     return 1;
   const Taken t = taken(s, d, face);
@@ -147,7 +147,7 @@ double soak(const State<D>& s, int d, int face, FaceFlow& f) {
   const int step = s.grid.stride[d];
   for (const int side : {-1, 1}) {
     const int next = face + side * step, wet_cell = side < 0 ? face - 2 * step : next;
-    if (s.cell[wet_cell].unknown < 0 || s.water_walls.closed(d, next) || in_plate(s, d, next)) continue;
+    if (!s.cell[wet_cell].wet() || s.water_walls.closed(d, next) || in_plate(s, d, next)) continue;
     const Taken t = taken(s, d, face);
     if (t.bulk <= 0 || t.fill <= 0) return 0;
     f.soaked = std::min(1.0, t.fill / t.bulk);
@@ -176,8 +176,8 @@ void predict_face(State<D>& s, int d, int face, double dt) {
   const bool water_open = !s.water_walls.closed(d, face);
   const bool water = water_open && sums.water_mass > kMassCutoff * rho * volume;
   const bool soil_closed = s.soil_walls.closed(d, face);
-  f.wet = water_open && (s.cell[face].unknown >= 0 || s.cell[face - s.grid.stride[d]].unknown >= 0 ||
-                         submerged(s, d, face));
+  f.wet =
+      water_open && (s.cell[face].wet() || s.cell[face - s.grid.stride[d]].wet() || submerged(s, d, face));
   if (!soil && !water && !f.wet) {
     if (soil_closed) s.soil_walls.set_separated(d, face, false);
     return;
@@ -310,8 +310,8 @@ void correct_velocities(State<D>& s, double dt) {
     });
 }
 
-template double pressure_gradient<2>(const State<2>&, const std::vector<double>&, int, int);
-template double pressure_gradient<3>(const State<3>&, const std::vector<double>&, int, int);
+template double pressure_gradient<2>(const State<2>&, const Field<double>&, int, int);
+template double pressure_gradient<3>(const State<3>&, const Field<double>&, int, int);
 template void predict_velocities<2>(State<2>&, double);
 template void predict_velocities<3>(State<3>&, double);
 template void correct_velocities<2>(State<2>&, double);

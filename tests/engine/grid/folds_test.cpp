@@ -171,6 +171,12 @@ struct Floor : ::testing::Test {
     for (int x = 0; x < 6; ++x) walls.close(1, grid.index({x, 0}), no_slip);
     walls.rebuild(grid);
   }
+  void separate(bool value) {
+    for (int x = 0; x < 6; ++x) walls.set_separated(1, grid.index({x, 0}), value);
+  }
+  void commit() {
+    for (int x = 0; x < 6; ++x) walls.commit_separated(1, grid.index({x, 0}));
+  }
 };
 
 TEST_F(Floor, NothingIsLeftBelowAndWeightsStillSumToOne) {
@@ -211,12 +217,12 @@ TEST_F(Floor, SeparatedMatterKeepsTheSignOfItsNormalVelocity) {
   close(false);
   const Vec<2> x{2.5, 0.2};
   EXPECT_LT(value<2>(grid, walls, x, 1, one), 1 - 1e-3);
-  for (int c = 0; c < 6; ++c) walls.set_separated(1, grid.index({c, 0}), true);
+  separate(true);
   EXPECT_LT(value<2>(grid, walls, x, 1, one), 1 - 1e-3);  // one step folds with one sign
-  walls.commit_separated();
+  commit();
   EXPECT_NEAR(value<2>(grid, walls, x, 1, one), 1, 1e-15);
-  for (int c = 0; c < 6; ++c) walls.set_separated(1, grid.index({c, 0}), false);
-  walls.commit_separated();
+  separate(false);
+  commit();
   EXPECT_LT(value<2>(grid, walls, x, 1, one), 1 - 1e-3);
 }
 

@@ -20,15 +20,40 @@ Grid<D> uneven_grid() {
   return Grid<D>(Vec<D>{}, count, 0.1);
 }
 
+/// A point in the middle of every cell of which `f` is true.
+template <int D, class F>
+std::vector<Vec<D>> middles(const Grid<D>& grid, F&& f) {
+  std::vector<Vec<D>> x;
+  for_each_cell(grid, [&](int, const Cell<D>& c) {
+    if (f(c)) x.push_back(grid.center(c));
+  });
+  return x;
+}
+
+/// Blocks around points.
+template <int D>
+Blocks<D> blocks_at(const Grid<D>& grid, const std::vector<Vec<D>>& x, BlockList& list) {
+  Blocks<D> blocks(grid);
+  blocks.locate(grid, x, list);
+  blocks.activate({&list});
+  return blocks;
+}
+
+template <int D>
+Blocks<D> all_blocks(const Grid<D>& grid) {
+  BlockList list;
+  return blocks_at<D>(grid, middles(grid, [](const Cell<D>&) { return true; }), list);
+}
+
 template <int D>
 void expect_cells_once(const Grid<D>& grid) {
-  const Blocks<D> blocks(grid);
+  const Blocks<D> blocks = all_blocks(grid);
   std::map<int, int> block_of;
   for (int b = 0; b < blocks.count(); ++b)
     blocks.cells(grid, b, false, [&](int i, const Cell<D>& c) {
       EXPECT_TRUE(block_of.emplace(i, b).second);
       EXPECT_EQ(grid.index(c), i);
-      EXPECT_EQ(blocks.block_of(c), b);
+      EXPECT_EQ(blocks.number_of(blocks.block_of(c)), b);
     });
   int inside = 0;
   for_each_cell(grid, [&](int i, const Cell<D>&) {
@@ -40,7 +65,7 @@ void expect_cells_once(const Grid<D>& grid) {
 
 template <int D>
 void expect_faces_once(const Grid<D>& grid) {
-  const Blocks<D> blocks(grid);
+  const Blocks<D> blocks = all_blocks(grid);
   std::map<int, int> visits;
   for (int b = 0; b < blocks.count(); ++b)
     blocks.cells(grid, b, true, [&](int i, const Cell<D>& c) {
@@ -68,7 +93,7 @@ TEST(Blocks, EachFaceIsVisitedOnce) {
 /// Runs by_color on one thread and tells the blocks of each colour apart by what they may write to.
 template <int D>
 void expect_colors_apart(const Grid<D>& grid) {
-  const Blocks<D> blocks(grid);
+  const Blocks<D> blocks = all_blocks(grid);
   const auto color_of = [&](int b) {
     Cell<D> first{};
     bool known = false;
@@ -107,7 +132,7 @@ TEST(Blocks, ColoursShareNoFaceWithinReach2D) { expect_colors_apart(uneven_grid<
 TEST(Blocks, ColoursShareNoFaceWithinReach3D) { expect_colors_apart(Grid<3>({0, 0, 0}, {13, 9, 9}, 1)); }
 
 TEST(Blocks, ByColorAndAllVisitEveryBlockOnce) {
-  const Blocks<3> blocks(uneven_grid<3>());
+  const Blocks<3> blocks = all_blocks(uneven_grid<3>());
   std::mutex mutex;
   std::multiset<int> colored, all;
   blocks.by_color([&](int b) {
@@ -125,7 +150,7 @@ TEST(Blocks, ByColorAndAllVisitEveryBlockOnce) {
 }
 
 TEST(Blocks, SumIsTakenInTheOrderOfTheBlocks) {
-  const Blocks<2> blocks(Grid<2>({0, 0}, {80, 80}, 1));
+  const Blocks<2> blocks = all_blocks(Grid<2>({0, 0}, {80, 80}, 1));
   const auto part = [](int b) { return std::pow(-1.7, b % 40); };
   double serial = 0;
   for (int b = 0; b < blocks.count(); ++b) serial += part(b);
@@ -135,13 +160,13 @@ TEST(Blocks, SumIsTakenInTheOrderOfTheBlocks) {
 
 TEST(Blocks, GroupIsAStableSort) {
   const Grid<2> grid = uneven_grid<2>();
-  const Blocks<2> blocks(grid);
   std::mt19937 random(3);
   std::uniform_real_distribution<double> x(0, 1.3), y(0, 0.9);
   std::vector<Vec<2>> places(20000);
   for (auto& p : places) p = {x(random), y(random)};
   BlockList list;
-  blocks.group(grid, places, list);
+  Blocks<2> blocks = blocks_at<2>(grid, places, list);
+  blocks.group(list);
   ASSERT_EQ(static_cast<int>(list.begin.size()), blocks.count() + 1);
   EXPECT_EQ(list.begin.front(), 0u);
   EXPECT_EQ(list.begin.back(), places.size());
@@ -149,16 +174,54 @@ TEST(Blocks, GroupIsAStableSort) {
   for (int b = 0; b < blocks.count(); ++b)
     for (auto i = list.begin[b]; i < list.begin[b + 1]; ++i) {
       const auto p = list.order[i];
-      EXPECT_EQ(blocks.block_of(grid.cell_of(places[p])), b);
+      EXPECT_EQ(blocks.number_of(blocks.block_of(grid.cell_of(places[p]))), b);
       if (i > list.begin[b]) {
         EXPECT_LT(list.order[i - 1], p);
       }
       EXPECT_FALSE(seen[p]);
       seen[p] = 1;
     }
-  blocks.group(grid, {}, list);  // an empty set leaves nothing behind
+  blocks.locate(grid, {}, list);
+  blocks.group(list);  // an empty set leaves nothing behind
   EXPECT_TRUE(list.order.empty());
   EXPECT_EQ(list.begin.back(), 0u);
+}
+
+/// 40 × 40 cells, 10 × 10 blocks.
+const Grid<2> kSquare({0, 0}, {40, 40}, 1);
+
+TEST(Blocks, ThoseAroundPointsAreActive) {
+  BlockList list;
+  Blocks<2> blocks = blocks_at<2>(kSquare, {{22, 14}}, list);  // in block (5, 3)
+  ASSERT_EQ(blocks.count(), 9);
+  for (int b = 0; b < blocks.count(); ++b)
+    blocks.cells(kSquare, b, false, [&](int, const Cell<2>& c) {
+      EXPECT_LE(std::abs(c[0] / 4 - 5), 1);
+      EXPECT_LE(std::abs(c[1] / 4 - 3), 1);
+    });
+  EXPECT_EQ(blocks.number_of(blocks.block_of({22, 14})), 4);
+  EXPECT_EQ(blocks.number_of(blocks.block_of({39, 39})), -1);
+  blocks_at<2>(kSquare, {{0.5, 0.5}}, list);
+  EXPECT_EQ(blocks_at<2>(kSquare, {{0.5, 0.5}}, list).count(), 4);  // in a corner
+}
+
+TEST(Blocks, ReportsThoseThatAreLeftBehind) {
+  BlockList list;
+  Blocks<2> blocks = blocks_at<2>(kSquare, {{22, 14}}, list);
+  blocks.locate(kSquare, {{26, 14}}, list);  // one block to the right
+  EXPECT_EQ(blocks.activate({&list}), (std::vector<int>{24, 34, 44}));
+  EXPECT_EQ(blocks.count(), 9);
+  EXPECT_TRUE(blocks.activate({&list}).empty());
+  EXPECT_EQ(blocks.activate({}).size(), 9u);
+  EXPECT_EQ(blocks.count(), 0);
+}
+
+TEST(Blocks, PinnedOnesStayActive) {
+  Blocks<2> blocks(kSquare);
+  blocks.pin(blocks.block_of({38, 38}));
+  EXPECT_TRUE(blocks.activate({}).empty());
+  EXPECT_EQ(blocks.count(), 4);
+  EXPECT_TRUE(blocks.activate({}).empty());
 }
 
 }  // namespace

@@ -31,7 +31,7 @@ double pressure_error(const State<D>& s, double level) {
   const double g = -s.constants.gravity[kUp], weight = s.constants.water_density * g;
   double worst = 0;
   for_each_cell(s.grid, [&](int i, const Cell<D>& c) {
-    if (s.cell[i].unknown < 0) return;
+    if (!s.cell[i].wet()) return;
     const double expected = weight * (level - s.grid.center(c)[kUp]);
     worst = std::max(worst, std::abs(s.pressure[i] - expected) / std::max(expected, weight * s.grid.h));
   });
@@ -41,7 +41,7 @@ double pressure_error(const State<D>& s, double level) {
 template <int D>
 int wet_cells(const State<D>& s) {
   int n = 0;
-  for_each_cell(s.grid, [&](int i, const Cell<D>&) { n += s.cell[i].unknown >= 0; });
+  for_each_cell(s.grid, [&](int i, const Cell<D>&) { n += s.cell[i].wet(); });
   return n;
 }
 

@@ -97,12 +97,12 @@ TEST(Pressure, CorrectedVelocitiesBalanceTheMass) {
   State<2> s = moving_state<2>(scene, dt);
   double before = 0;
   for_each_cell(s.grid, [&](int i, const Cell<2>&) {
-    if (s.cell[i].unknown >= 0) before = std::max(before, std::abs(inflow(s, i)));
+    if (s.cell[i].wet()) before = std::max(before, std::abs(inflow(s, i)));
   });
   ASSERT_TRUE(advance(s, dt).pressure.converged);
   double open = 0;
   for_each_cell(s.grid, [&](int i, const Cell<2>&) {
-    if (s.cell[i].unknown < 0) return;
+    if (!s.cell[i].wet()) return;
     const double stored =
         s.cell[i].n * s.constants.water_compliance / dt * (s.pressure[i] - s.pressure_old[i]);
     open = std::max(open, std::abs(stored - inflow(s, i)));

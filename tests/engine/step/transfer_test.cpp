@@ -199,7 +199,7 @@ TEST(LinearKernel, LightFacesMoveWithTheirNeighbours) {
   double sum = 0;
   for (int face = 0; face < s.grid.count(); ++face) {
     sum += s.sums[0][face].soil_mass;
-    if (s.follower[0][face].leader < 0) continue;
+    if (s.follower[0][face].leader == 0) continue;
     ++light;
     const FaceFlow &f = s.flow[0][face], &leader = s.flow[0][leader_of(s, 0, face)];
     EXPECT_EQ(s.sums[0][face].soil_mass, 0);

@@ -1,0 +1,59 @@
+#pragma once
+// Arrays over the whole lattice that cost only where something happens: their memory comes from the system as
+// zeros, page by page, once it is touched. The lattice keeps one plain index, and an empty part of the domain
+// takes no memory. [SAB14] uses virtual memory in this way for sparse grids.
+
+#include <sys/mman.h>
+
+#include <cstddef>
+#include <cstdlib>
+#include <new>
+#include <vector>
+
+namespace quicksand {
+
+/// Allocator of zeroed pages. Elements made without arguments are left as the system gave them, so a type may
+/// be kept in a Field only if all bits zero is a state that it may be found in.
+template <class T>
+struct ZeroPages {
+  using value_type = T;
+
+  ZeroPages() = default;
+  template <class U>
+  ZeroPages(const ZeroPages<U>&) {}
+
+  T* allocate(std::size_t n) {
+#if defined(__SANITIZE_ADDRESS__)
+    void* at = std::calloc(n, sizeof(T));  // so that the sanitizer sees where an array ends
+    if (!at) throw std::bad_alloc();
+#else
+    void* at = mmap(nullptr, n * sizeof(T), PROT_READ | PROT_WRITE,
+                    MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    if (at == MAP_FAILED) throw std::bad_alloc();
+#endif
+    return static_cast<T*>(at);
+  }
+  void deallocate(T* at, [[maybe_unused]] std::size_t n) {
+#if defined(__SANITIZE_ADDRESS__)
+    std::free(at);
+#else
+    munmap(at, n * sizeof(T));
+#endif
+  }
+  template <class U>
+  void construct(U*) {}
+  template <class U, class... Arguments>
+  void construct(U* at, Arguments&&... arguments) {
+    ::new (static_cast<void*>(at)) U(std::forward<Arguments>(arguments)...);
+  }
+  template <class U>
+  bool operator==(const ZeroPages<U>&) const {
+    return true;
+  }
+};
+
+/// Make one by its size, `Field<T>(n)`: n zeros. `assign` and copies touch everything.
+template <class T>
+using Field = std::vector<T, ZeroPages<T>>;
+
+}  // namespace quicksand

@@ -1,0 +1,51 @@
+// Which blocks a step goes through, and what those hold that it no longer does.
+
+#include "engine/step/phases.hpp"
+
+namespace quicksand {
+namespace {
+
+/// Faces and cells of a block become as those that nothing ever reached.
+template <int D>
+void forget(State<D>& s, int block) {
+  s.blocks.cells_at(s.grid, block, true, [&](int i, const Cell<D>&) {
+    for (int d = 0; d < D; ++d) {
+      s.sums[d][i] = {};
+      s.image[d][i] = {};
+      s.flow[d][i] = {};
+      s.speeds[d][i] = {};
+      if (!s.soil_walls.port(d, i)) s.soil_walls.set_separated(d, i, false);
+      s.soil_walls.commit_separated(d, i);
+    }
+    s.cell_sums[i] = {};
+    s.cell[i] = {};
+    s.pressure[i] = s.pressure_old[i] = 0;
+  });
+}
+
+/// Markers of loads are among the points of their soil, but for those of a body that was removed.
+template <int D>
+std::vector<Vec<D>> marker_places(const State<D>& s) {
+  std::vector<Vec<D>> x;
+  for (const SurfaceLoad<D>& load : s.loads)
+    for (const LoadMarker<D>& marker : load.markers) x.push_back(marker.x);
+  return x;
+}
+
+}  // namespace
+
+template <int D>
+void activate_blocks(State<D>& s) {
+  BlockList markers;
+  s.blocks.locate(s.grid, s.soil.x, s.soil_blocks);
+  s.blocks.locate(s.grid, s.water.x, s.water_blocks);
+  s.blocks.locate(s.grid, marker_places(s), markers);
+  for (const int block : s.blocks.activate({&s.soil_blocks, &s.water_blocks, &markers})) forget(s, block);
+  s.blocks.group(s.soil_blocks);
+  s.blocks.group(s.water_blocks);
+}
+
+template void activate_blocks<2>(State<2>&);
+template void activate_blocks<3>(State<3>&);
+
+}  // namespace quicksand
