@@ -94,11 +94,15 @@ void measure(const Scene& scene, Plan& plan) {
   const double per_soil =
       affine + 3 * sizeof(Vec<D>) + sizeof(Stress<D>) + 3 * sizeof(double) + 2 * sizeof(int) + 8;
   const double per_water = affine + 3 * sizeof(Vec<D>) + sizeof(double) + sizeof(int) + 8;
-  const double per_cell = follower + D * (sizeof(FaceSums) + sizeof(FaceFlow) + sizeof(FixedFace)) +
-                          2 * sizeof(CellSums) + sizeof(CellState) + 2 * sizeof(double) + 2 * (D + 7) +
-                          (grid.axial ? (D + 1) * sizeof(double) : 0);
+  const double fixed = points.fixed ? D * sizeof(FixedFace) + sizeof(CellSums) : 0;
+  const double per_active_cell =
+      follower + fixed + D * (sizeof(FaceSums) + sizeof(FaceImage) + sizeof(FaceFlow) + sizeof(FaceSpeeds)) +
+      sizeof(CellSums) + sizeof(CellState) + 2 * sizeof(double);
+  // Flags of walls, for water and for grains, and volumes about an axis.
+  const double per_cell = 2 * (5 * D + 1 + sizeof(int)) + (grid.axial ? (D + 1) * sizeof(double) : 0);
   plan.memory_bytes = per_soil * static_cast<double>(plan.soil_points + plan.fixed_soil_points) +
-                      per_water * static_cast<double>(plan.water_points) + per_cell * grid.count();
+                      per_water * static_cast<double>(plan.water_points) +
+                      per_active_cell * static_cast<double>(points.active_cells) + per_cell * grid.count();
 }
 
 void explain(const Scene& scene, Plan& plan) {

@@ -1,5 +1,8 @@
 #include "engine/points/seeding.hpp"
 
+#include "engine/grid/walls.hpp"
+#include "engine/points/blocks.hpp"
+
 #include <algorithm>
 #include <iterator>
 
@@ -110,11 +113,18 @@ void covered_places(const Scene& scene, const Grid<D>& grid, F&& f) {
 template <int D>
 PointCounts count_points(const Scene& scene, const Grid<D>& grid) {
   PointCounts counts;
-  covered_places<D>(scene, grid, [&](const Vec<D>&, std::size_t b) {
+  Blocks<D> blocks(grid);
+  BlockList list;
+  covered_places<D>(scene, grid, [&](const Vec<D>& x, std::size_t b) {
     const Body& body = scene.bodies[b];
+    const int block = blocks.block_of(grid.cell_of(x));
+    const bool moves = !body.fixed || body.kind != BodyKind::soil;
+    if (moves && (list.key.empty() || list.key.back() != block)) list.key.push_back(block);
     if (body.kind != BodyKind::water) ++(body.fixed ? counts.fixed : counts.soil);
     if (body.kind != BodyKind::soil) ++counts.water;
   });
+  blocks.activate({&list});
+  counts.active_cells = blocks.count() * static_cast<std::size_t>(power(Blocks<D>::kEdge, D));
   return counts;
 }
 

@@ -13,8 +13,9 @@ struct SeededPoints {
 
 struct PointCounts {
   std::size_t soil = 0, fixed = 0, water = 0;
+  std::size_t active_cells = 0;  ///< of the blocks that are active around moving points
 };
-/// How many points `seed` would make, without making them.
+/// How many points `seed` would make, and where, without making them.
 template <int D>
 PointCounts count_points(const Scene& scene, const Grid<D>& grid);
 
