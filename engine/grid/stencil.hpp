@@ -3,31 +3,10 @@
 
 #include <type_traits>
 
-#include "engine/grid/kernel.hpp"
+#include "engine/grid/point_kernel.hpp"
 #include "engine/grid/walls.hpp"
 
 namespace quicksand {
-
-/// One-dimensional factors of all weights of a point; computed once per pass.
-template <int D, class Shape = QuadraticSpline>
-struct PointKernel {
-  using Factor = Nodes<Shape::nodes>;
-  int home = 0;                  ///< index of the point's cell
-  std::array<Factor, D> center;  ///< nodes: centres of cells
-  std::array<Factor, D> face;    ///< nodes: faces
-
-  PointKernel(const Grid<D>& grid, const Vec<D>& x) {
-    const Cell<D> c = grid.cell_of(x);
-    home = grid.index(c);
-    for (int d = 0; d < D; ++d) {
-      const double xi = std::clamp((x[d] - grid.origin[d]) * grid.inverse_h - c[d], 0.0, 1.0);
-      center[d] = Shape::on_centers(xi);
-      face[d] = Shape::on_faces(xi);
-    }
-  }
-  /// The factor along axis a of the weights on faces of component d.
-  const Factor& factor(int d, int a) const { return a == d ? face[a] : center[a]; }
-};
 
 /// Weight of one face: its product, its gradient with respect to the point's position (1/m), and the arm from
 /// the point to the face as the kernel sees it, behind a wall too (m).
@@ -37,13 +16,26 @@ struct FaceWeight {
   Vec<D> gradient, arm;
 };
 
+/// A row of faces along x, or of cells, without the factors along x: those of a node multiply `w` and all of
+/// `gradient` by its own weight, but `gradient[0]` by its derivative.
+template <int D, int n>
+struct KernelRow {
+  int first = 0;  ///< face of node 0; the others follow
+  double w = 1;
+  Vec<D> gradient{}, arm{};
+  std::array<double, n> x, dx;  ///< weights of the nodes along x, and their derivatives, per cell
+};
+
 /// What a face's velocity adds to the gradient that a point carries in the affine transfer, 1/m:
 /// w (x_f − x_p) over the kernel's spread, which for hats is the gradient of w.
 template <class Shape, int D>
 Vec<D> affine_weight(const FaceWeight<D>& f, double inverse_h) {
-  if constexpr (std::is_same_v<Shape, LinearHat>) return f.gradient;
   Vec<D> a;
-  for (int j = 0; j < D; ++j) a[j] = f.w * f.arm[j] * inverse_h * inverse_h / QuadraticSpline::spread;
+  for (int j = 0; j < D; ++j)
+    if constexpr (std::is_same_v<Shape, LinearHat>)
+      a[j] = f.gradient[j];
+    else
+      a[j] = f.w * f.arm[j] * inverse_h * inverse_h / QuadraticSpline::spread;
   return a;
 }
 
@@ -60,63 +52,121 @@ inline void call(F& f, int face, const FaceWeight<D>& weight, double sign) {
     f(face, weight.w, sign, weight.gradient);
 }
 
-/// Away from walls: row by row along x, whose faces lie one after the other in memory.
-template <int D, class Shape, class F>
-inline void open_faces(const Grid<D>& grid, const PointKernel<D, Shape>& k, int d, F& f) {
-  constexpr int n = Shape::nodes;
-  const auto& along = k.factor(d, 0);
-  for (int row = 0; row < power(n, D - 1); ++row) {
-    FaceWeight<D> weight;
-    double outer = 1;
-    Vec<D> outer_gradient;
-    outer_gradient.fill(grid.inverse_h);
-    int face = k.home + along.first * grid.stride[0];
-    for (int a = 1, rest = row; a < D; ++a, rest /= n) {
-      const auto& s = k.factor(d, a);
-      const int j = rest % n;
-      face += (s.first + j) * grid.stride[a];
-      outer *= s.w[j];
-      for (int b = 0; b < D; ++b) outer_gradient[b] *= b == a ? s.dw[j] : s.w[j];
-      if constexpr (takes_arm<D, F>) weight.arm[a] = (s.first + j - s.at) * grid.h;
+/// Nodes along axis a of the faces of component d.
+template <int d, int a, class Kernel>
+inline auto nodes(const Kernel& k) {
+  if constexpr (a == d)
+    return k.face(a);
+  else
+    return k.center(a);
+}
+template <int d, class Shape>
+constexpr int node_count(int a) {
+  return a == d ? Shape::faces : Shape::centers;
+}
+
+/// Multiplies a weight and its gradient by the factors of node i along axis a.
+template <int D, class Weight, class Nodes>
+inline void multiply(Weight& weight, const Nodes& n, int a, int i, double h) {
+  const double w = n.w(i);
+  weight.w *= w;
+  for (int b = 0; b < D; ++b) weight.gradient[b] *= b == a ? n.dw(i) : w;
+  weight.arm[a] = (n.first() + i - n.at()) * h;
+}
+
+}  // namespace stencil
+
+/// f(KernelRow) for the rows of faces of component d (a number as a type)
+/// around a point that no wall is near.
+template <int D, class Kernel, class Component, class F>
+inline void for_rows(const Grid<D>& grid, const Kernel& k, Component, F&& f) {
+  constexpr int d = Component::value;
+  using Shape = typename Kernel::Shape;
+  constexpr int nx = stencil::node_count<d, Shape>(0);
+  const auto x = stencil::nodes<d, 0>(k);
+  const auto y = stencil::nodes<d, 1>(k);
+  KernelRow<D, nx> start;
+  start.first = k.home() + x.first();
+  start.gradient.fill(grid.inverse_h);
+  for (int i = 0; i < nx; ++i) start.x[i] = x.w(i), start.dx[i] = x.dw(i);
+  const auto plane = [&](const KernelRow<D, nx>& of) {
+    for (int j = 0; j < stencil::node_count<d, Shape>(1); ++j) {
+      KernelRow<D, nx> row = of;
+      row.first += (y.first() + j) * grid.stride[1];
+      stencil::multiply<D>(row, y, 1, j, grid.h);
+      f(row);
     }
-#pragma GCC unroll 3
-    for (int i = 0; i < n; ++i) {
-      weight.w = outer * along.w[i];
-      weight.gradient[0] = outer_gradient[0] * along.dw[i];
-      for (int b = 1; b < D; ++b) weight.gradient[b] = outer_gradient[b] * along.w[i];
-      if constexpr (takes_arm<D, F>) weight.arm[0] = (along.first + i - along.at) * grid.h;
-      call<D>(f, face + i, weight, 1.0);
+  };
+  if constexpr (D == 2) {
+    plane(start);
+  } else {
+    const auto z = stencil::nodes<d, 2>(k);
+    for (int j = 0; j < stencil::node_count<d, Shape>(2); ++j) {
+      KernelRow<D, nx> of = start;
+      of.first += (z.first() + j) * grid.stride[2];
+      stencil::multiply<D>(of, z, 2, j, grid.h);
+      plane(of);
     }
   }
 }
 
-/// Beside walls.
-template <int D, class Shape, class F>
-inline void folded_faces(const Grid<D>& grid, const Walls<D>& walls, const PointKernel<D, Shape>& k, int d,
-                         const typename Walls<D>::CellFolds& folds, F& f) {
-  constexpr int n = power(Shape::nodes, D);
-  std::array<int, D> position;
-  for (int i = 0; i < n; ++i) {
-    int rest = i;
-    FaceWeight<D> weight;
-    weight.gradient.fill(grid.inverse_h);
-    for (int a = 0; a < D; ++a) {
-      const int j = rest % Shape::nodes;
-      rest /= Shape::nodes;
-      const auto& s = k.factor(d, a);
-      position[a] = s.first + j;
-      weight.w *= s.w[j];
-      for (int b = 0; b < D; ++b) weight.gradient[b] *= b == a ? s.dw[j] : s.w[j];
-      if constexpr (takes_arm<D, F>) weight.arm[a] = (position[a] - s.at) * grid.h;
+/// f(d) for all components, each as a type with the number as `value`.
+template <int D, class F>
+inline void for_components(F&& f) {
+  f(std::integral_constant<int, 0>{}), f(std::integral_constant<int, 1>{});
+  if constexpr (D == 3) f(std::integral_constant<int, 2>{});
+}
+
+namespace stencil {
+
+/// Away from walls.
+template <int d, int D, class Kernel, class F>
+inline void open_faces(const Grid<D>& grid, const Kernel& k, F& f) {
+  const auto x = nodes<d, 0>(k);
+  for_rows(grid, k, std::integral_constant<int, d>{}, [&](const auto& row) {
+    for (std::size_t i = 0; i < row.x.size(); ++i) {
+      FaceWeight<D> weight{row.w, row.gradient, row.arm};
+      multiply<D>(weight, x, 0, static_cast<int>(i), grid.h);
+      call<D>(f, row.first + static_cast<int>(i), weight, 1.0);
     }
-    int slot = position[d] + 1;
-    for (int a = 0, scale = 4; a < D; ++a)
-      if (a != d) slot += (position[a] + 1) * scale, scale *= 3;
-    const Fold& fold = folds.face[d][slot];
-    double sign = fold.tangential;
-    if (fold.normal_wall >= 0 && !walls.separated(d, fold.normal_wall)) sign = -sign;
-    call<D>(f, fold.target, weight, sign);
-  }
+  });
+}
+
+/// Beside walls.
+template <int d, int D, class Kernel, class F>
+inline void folded_faces(const Grid<D>& grid, const Walls<D>& walls, const Kernel& k,
+                         const typename Walls<D>::CellFolds& folds, F& f) {
+  using Shape = typename Kernel::Shape;
+  // Along axis a, the factors of those before it being in `weight`.
+  const auto along = [&](const auto& self, auto axis, const FaceWeight<D>& weight, int slot,
+                         int scale) -> void {
+    constexpr int a = decltype(axis)::value;
+    const auto n = nodes<d, a>(k);
+    for (int i = 0; i < node_count<d, Shape>(a); ++i) {
+      FaceWeight<D> product = weight;
+      multiply<D>(product, n, a, i, grid.h);
+      const int position = n.first() + i + 1, at = slot + position * (a == d ? 1 : scale);
+      if constexpr (a + 1 < D) {
+        self(self, std::integral_constant<int, a + 1>{}, product, at, a == d ? scale : 3 * scale);
+      } else {
+        const Fold& fold = folds.face[d][at];
+        double sign = fold.tangential;
+        if (fold.normal_wall >= 0 && !walls.separated(d, fold.normal_wall)) sign = -sign;
+        call<D>(f, fold.target, product, sign);
+      }
+    }
+  };
+  FaceWeight<D> one;
+  one.gradient.fill(grid.inverse_h);
+  along(along, std::integral_constant<int, 0>{}, one, 0, 4);
+}
+
+template <int d, int D, class Kernel, class F>
+inline void faces(const Grid<D>& grid, const Walls<D>& walls, const Kernel& k, F& f) {
+  if (const auto* folds = walls.folds(k.home()))
+    folded_faces<d>(grid, walls, k, *folds, f);
+  else
+    open_faces<d>(grid, k, f);
 }
 
 }  // namespace stencil
@@ -124,34 +174,33 @@ inline void folded_faces(const Grid<D>& grid, const Walls<D>& walls, const Point
 /// Calls f(face, weight, sign, gradient) for the faces of component d around a point. `sign` goes with
 /// momenta, forces and velocities. f may take a `FaceWeight` in place of weight and gradient: f(face, weight,
 /// sign).
-template <int D, class Shape, class F>
-inline void for_faces(const Grid<D>& grid, const Walls<D>& walls, const PointKernel<D, Shape>& k, int d,
-                      F&& f) {
-  if (const auto* folds = walls.folds(k.home))
-    stencil::folded_faces(grid, walls, k, d, *folds, f);
-  else
-    stencil::open_faces(grid, k, d, f);
+template <int D, class Kernel, class F>
+inline void for_faces(const Grid<D>& grid, const Walls<D>& walls, const Kernel& k, int d, F&& f) {
+  if (d == 0)
+    stencil::faces<0>(grid, walls, k, f);
+  else if (d == 1)
+    stencil::faces<1>(grid, walls, k, f);
+  else if constexpr (D == 3)
+    stencil::faces<2>(grid, walls, k, f);
 }
 
 /// Calls f(cell, weight) for the cell centres around a point.
-template <int D, class Shape, class F>
-inline void for_centers(const Grid<D>& grid, const Walls<D>& walls, const PointKernel<D, Shape>& k, F&& f) {
-  constexpr int n = Shape::nodes;
-  const auto* folds = walls.folds(k.home);
+template <int D, class Kernel, class F>
+inline void for_centers(const Grid<D>& grid, const Walls<D>& walls, const Kernel& k, F&& f) {
+  constexpr int n = Kernel::Shape::centers;
+  const auto* folds = walls.folds(k.home());
+  const auto x = k.center(0);
   for (int row = 0; row < power(n, D - 1); ++row) {
     double outer = 1;
-    int cell = k.home, slot = 0;
+    int cell = k.home() + x.first(), slot = x.first() + 1;
     for (int a = 1, rest = row, scale = 3; a < D; ++a, rest /= n, scale *= 3) {
-      const int position = k.center[a].first + rest % n;
-      outer *= k.center[a].w[rest % n];
+      const auto s = k.center(a);
+      const int position = s.first() + rest % n;
+      outer *= s.w(rest % n);
       cell += position * grid.stride[a];
       slot += (position + 1) * scale;
     }
-#pragma GCC unroll 3
-    for (int i = 0; i < n; ++i) {
-      const int position = k.center[0].first + i;
-      f(folds ? folds->center[slot + position + 1] : cell + position, outer * k.center[0].w[i]);
-    }
+    for (int i = 0; i < n; ++i) f(folds ? folds->center[slot + i] : cell + i, outer * x.w(i));
   }
 }
 

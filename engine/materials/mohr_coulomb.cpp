@@ -48,6 +48,12 @@ MohrCoulombReturn relax(const MohrCoulomb& law, const Elastic& e, const std::arr
   return r;
 }
 
+/// Whether no stress within the bounds yields.
+bool surely_inside(const MohrCoulomb& law, const PrincipalBounds& s) {
+  return s.largest * (1 + law.sin_phi) - s.smallest * (1 - law.sin_phi) <= 2 * law.cohesion * law.cos_phi &&
+         s.largest <= law.tension;
+}
+
 bool sorted(const std::array<double, 3>& s, double tolerance) {
   return s[0] >= s[1] - tolerance && s[1] >= s[2] - tolerance;
 }
@@ -153,8 +159,10 @@ MohrCoulomb MohrCoulombLaw::strength(double plastic_strain) const {
 template <int D>
 int MohrCoulombLaw::update(SoilState<D>& state, const Strain<D>& strain, double /*porosity*/) const {
   state.stress = elastic.stretched(state.stress, strain);
+  const MohrCoulomb now = strength(state.plastic_strain);
+  if (surely_inside(now, principal_bounds<D>(state.stress))) return 0;
   const Principal trial = principal<D>(state.stress);
-  const MohrCoulombReturn r = return_map(strength(state.plastic_strain), elastic, trial.value);
+  const MohrCoulombReturn r = return_map(now, elastic, trial.value);
   if (r.region == YieldRegion::elastic) return 0;
   state.stress = with_values<D>(trial, r.stress);
   state.plastic_strain += std::sqrt(2.0 / 3.0 * contracted(deviator(r.plastic_strain)));

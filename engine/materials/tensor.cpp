@@ -56,45 +56,14 @@ Principal principal_plane(const Stress<2>& s) {
 
 }  // namespace
 
-template <int D>
-Strain<D> strain_increment(const Gradient<D>& l, double dt, [[maybe_unused]] double hoop) {
-  if constexpr (D == 2)
-    return {l[0][0] * dt, l[1][1] * dt, hoop * dt, 0.5 * (l[0][1] + l[1][0]) * dt};
-  else
-    return {l[0][0] * dt,
-            l[1][1] * dt,
-            l[2][2] * dt,
-            0.5 * (l[0][1] + l[1][0]) * dt,
-            0.5 * (l[1][2] + l[2][1]) * dt,
-            0.5 * (l[2][0] + l[0][2]) * dt};
-}
-
-template <int D>
-Gradient<D> midpoint_gradient(const Gradient<D>& l, double dt) {
-  const auto spin = [&](int i, int j) { return 0.5 * (l[i][j] - l[j][i]); };
-  Gradient<D> middle = l;
-  for (int i = 0; i < D; ++i)
-    for (int j = 0; j < D; ++j)
-      for (int k = 0; k < D; ++k) middle[i][j] -= 0.5 * dt * spin(i, k) * spin(k, j);
-  return middle;
-}
-
-template <int D>
-Stress<D> rotated(const Stress<D>& stress, const Gradient<D>& l, double dt) {
-  if constexpr (D == 2) {
-    const double w = 0.25 * (l[1][0] - l[0][1]) * dt;  // tangent of half the angle
-    const double c = (1 - w * w) / (1 + w * w), sn = 2 * w / (1 + w * w);
-    const double mean = 0.5 * (stress[0] + stress[1]), half = 0.5 * (stress[0] - stress[1]);
-    const double cc = c * c - sn * sn, ss = 2 * c * sn;
-    const double turned = cc * half - ss * stress[3];
-    return {mean + turned, mean - turned, stress[2], ss * half + cc * stress[3]};
-  } else {
-    Matrix spin = Matrix::Zero();
-    for (int i = 0; i < D; ++i)
-      for (int j = 0; j < D; ++j) spin(i, j) = 0.5 * (l[i][j] - l[j][i]) * dt;
-    const Matrix one = Matrix::Identity(), rotation = (one - 0.5 * spin).inverse() * (one + 0.5 * spin);
-    return to_stress<D>(rotation * to_matrix<D>(stress) * rotation.transpose());
-  }
+Stress<3> rotated_in_space(const Stress<3>& stress, const Gradient<3>& l, double dt) {
+  Matrix spin = Matrix::Zero();
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) spin(i, j) = 0.5 * (l[i][j] - l[j][i]) * dt;
+  // (1 − ½W)⁻¹(1 + ½W) = 1 + (W + ½W²)/(1 + ¼|w|²), with W's axial vector w: ½ W:W = |w|².
+  const double square = 0.5 * spin.squaredNorm();
+  const Matrix rotation = Matrix::Identity() + (spin + 0.5 * spin * spin) / (1 + 0.25 * square);
+  return to_stress<3>(rotation * to_matrix<3>(stress) * rotation.transpose());
 }
 
 template <int D>
@@ -119,12 +88,6 @@ Stress<D> with_values(const Principal& p, const std::array<double, 3>& value) {
   return to_stress<D>(m);
 }
 
-template Gradient<2> midpoint_gradient<2>(const Gradient<2>&, double);
-template Gradient<3> midpoint_gradient<3>(const Gradient<3>&, double);
-template Strain<2> strain_increment<2>(const Gradient<2>&, double, double);
-template Strain<3> strain_increment<3>(const Gradient<3>&, double, double);
-template Stress<2> rotated<2>(const Stress<2>&, const Gradient<2>&, double);
-template Stress<3> rotated<3>(const Stress<3>&, const Gradient<3>&, double);
 template Principal principal<2>(const Stress<2>&);
 template Principal principal<3>(const Stress<3>&);
 template Stress<2> with_values<2>(const Principal&, const std::array<double, 3>&);

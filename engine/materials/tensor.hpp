@@ -2,6 +2,8 @@
 // Symmetric tensors as points hold them, xx yy zz xy [yz zx] with tensor (not engineering) shear components.
 
 #include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
 
 #include "engine/points/points.hpp"
 
@@ -37,7 +39,14 @@ double contracted(const std::array<double, N>& t) {
 /// Hughes and J. Winget, IJNME 15 (1980) 1862, get from the middle of the motion, but for second order in the
 /// strain.
 template <int D>
-Gradient<D> midpoint_gradient(const Gradient<D>& l, double dt);
+Gradient<D> midpoint_gradient(const Gradient<D>& l, double dt) {
+  const auto spin = [&](int i, int j) { return 0.5 * (l[i][j] - l[j][i]); };
+  Gradient<D> middle = l;
+  for (int i = 0; i < D; ++i)
+    for (int j = 0; j < D; ++j)
+      for (int k = 0; k < D; ++k) middle[i][j] -= 0.5 * dt * spin(i, k) * spin(k, j);
+  return middle;
+}
 
 /// Volume after a step over that before, det(1 + Δt L).
 template <int D>
@@ -52,12 +61,50 @@ double volume_ratio(const Gradient<D>& l, double dt) {
 
 /// Strain of a step of dt seconds; in the plane the third strain grows at the rate `hoop`, 1/s.
 template <int D>
-Strain<D> strain_increment(const Gradient<D>& l, double dt, double hoop);
+Strain<D> strain_increment(const Gradient<D>& l, double dt, [[maybe_unused]] double hoop) {
+  if constexpr (D == 2)
+    return {l[0][0] * dt, l[1][1] * dt, hoop * dt, 0.5 * (l[0][1] + l[1][0]) * dt};
+  else
+    return {l[0][0] * dt,
+            l[1][1] * dt,
+            l[2][2] * dt,
+            0.5 * (l[0][1] + l[1][0]) * dt,
+            0.5 * (l[1][2] + l[2][1]) * dt,
+            0.5 * (l[2][0] + l[0][2]) * dt};
+}
 
 /// Stress carried along with the material's spin over dt seconds (Jaumann rate), by the rotation
 /// (1 − ½W)⁻¹(1 + ½W), which keeps its invariants.
+Stress<3> rotated_in_space(const Stress<3>& stress, const Gradient<3>& l, double dt);
 template <int D>
-Stress<D> rotated(const Stress<D>& stress, const Gradient<D>& l, double dt);
+Stress<D> rotated(const Stress<D>& stress, const Gradient<D>& l, double dt) {
+  if constexpr (D == 2) {
+    const double w = 0.25 * (l[1][0] - l[0][1]) * dt;  // tangent of half the angle
+    const double c = (1 - w * w) / (1 + w * w), sn = 2 * w / (1 + w * w);
+    const double mean = 0.5 * (stress[0] + stress[1]), half = 0.5 * (stress[0] - stress[1]);
+    const double cc = c * c - sn * sn, ss = 2 * c * sn;
+    const double turned = cc * half - ss * stress[3];
+    return {mean + turned, mean - turned, stress[2], ss * half + cc * stress[3]};
+  } else {
+    return rotated_in_space(stress, l, dt);
+  }
+}
+
+/// At least the largest principal value, and at most the smallest; in the plane these themselves.
+struct PrincipalBounds {
+  double largest, smallest;
+};
+template <int D>
+PrincipalBounds principal_bounds(const Stress<D>& s) {
+  if constexpr (D == 2) {
+    const double mean = 0.5 * (s[0] + s[1]), half = 0.5 * (s[0] - s[1]);
+    const double radius = std::sqrt(half * half + s[3] * s[3]);
+    return {std::max(mean + radius, s[2]), std::min(mean - radius, s[2])};
+  } else {
+    const double reach = std::sqrt(2.0 / 3.0 * contracted(deviator(s))), mean = trace(s) / 3;
+    return {mean + reach, mean - reach};
+  }
+}
 
 /// Principal values in descending order with their directions as columns.
 struct Principal {

@@ -76,7 +76,7 @@ void move_loads(State<D>& s, double dt) {
         for (double& component : step) component *= dt;
         const Vec<D> before = m.normal;
         for (int d = 0; d < D; ++d) m.normal[d] += dt * dot<D>(l[d], before);
-        move_point<D>(s.grid, s.soil_walls, kernel.home, m.x, step);
+        move_point<D>(s.grid, s.soil_walls, kernel.home(), m.x, step);
       }
   });
 }

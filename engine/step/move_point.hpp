@@ -8,14 +8,9 @@ namespace quicksand {
 /// Distance from a wall at which a point that would enter it is put back, in cells.
 inline constexpr double kClearance = 1e-6;
 
-/// Moves x, which lies in the cell `home`, by u; a closed face on the way stops the component across it.
-/// Returns whether it did.
+/// Moves x by u; a closed face on the way stops the component across it. Returns whether it did.
 template <int D>
-bool move_point(const Grid<D>& grid, const Walls<D>& walls, int home, Vec<D>& x, const Vec<D>& u) {
-  if (!walls.folds(home)) {
-    for (int d = 0; d < D; ++d) x[d] += u[d];
-    return false;
-  }
+bool move_beside_walls(const Grid<D>& grid, const Walls<D>& walls, Vec<D>& x, const Vec<D>& u) {
   bool stopped = false;
   for (int d = 0; d < D; ++d) {
     const Cell<D> c = grid.cell_of(x);
@@ -31,6 +26,13 @@ bool move_point(const Grid<D>& grid, const Walls<D>& walls, int home, Vec<D>& x,
     }
   }
   return stopped;
+}
+/// The same for x in the cell `home`.
+template <int D>
+inline bool move_point(const Grid<D>& grid, const Walls<D>& walls, int home, Vec<D>& x, const Vec<D>& u) {
+  if (walls.folds(home)) return move_beside_walls<D>(grid, walls, x, u);
+  for (int d = 0; d < D; ++d) x[d] += u[d];
+  return false;
 }
 
 }  // namespace quicksand

@@ -1,5 +1,6 @@
 // Points → faces and cells: masses, momenta, internal forces, drag, volumes.
 
+#include "engine/step/batches.hpp"
 #include "engine/step/phases.hpp"
 #include "engine/step/scheme.hpp"
 
@@ -31,53 +32,83 @@ double velocity_at_face(const PointSet<D>& set, std::uint32_t p, int d, const Fa
   return v;
 }
 
-template <class S, int D>
-void soil_to_faces(State<D>& s, std::uint32_t p) {
+/// What a soil point leaves on faces of one component, per weight w and gradient g:
+/// w `carried`, and the force −bulk (σ·g + w hoop) with w `resistivity`.
+template <int D>
+struct SoilShare {
+  Lanes<4> carried;  ///< mass, grains, bulk, momentum
+  Vec<D> stress;     ///< −bulk × row of the stress, [FMS19] eq. (1), ∇·σ′ in its weak form
+  double hoop = 0;   ///< the same of σθθ/r, which pulls towards the axis: the weak form's σθθ v_r/r
+  double resistivity = 0;
+};
+
+template <int D, class Row>
+QUICKSAND_INLINE void add_row(Field<FaceSums>& sums, const Row& row, const SoilShare<D>& share) {
+  const Lanes<4> carried = row.w * share.carried;
+  double across = row.w * share.hoop;
+  for (int j = 1; j < D; ++j) across += share.stress[j] * row.gradient[j];
+  const Lanes<2> with_weight{across, row.w * share.resistivity},
+      with_slope{share.stress[0] * row.gradient[0], 0};
+  for (std::size_t i = 0; i < row.x.size(); ++i) {
+    FaceSums& f = sums[row.first + i];
+    add_lanes<4>(f.soil_mass, row.x[i] * carried);
+    add_lanes<2>(f.soil_force, row.x[i] * with_weight + row.dx[i] * with_slope);
+  }
+}
+
+template <class S, int D, class Kernel>
+void soil_to_faces(State<D>& s, std::uint32_t p, const Kernel& kernel) {
   const SoilPoints<D>& soil = s.soil;
   const SoilMaterial& material = s.constants.soils[soil.soil[p]];
-  const PointKernel<D, typename S::Shape> kernel(s.grid, soil.x[p]);
   const double mass = soil.mass[p], n = soil.porosity[p];
   const double grains = mass / material.grain_density, bulk = grains / (1 - n);
   const double resistivity = s.water.size() ? bulk * material.drag.resistivity(n, discharge_of(soil, p)) : 0;
-  // The hoop stress pulls towards the axis: the weak form's σθθ v_r/r.
-  const double hoop = S::axial ? soil.stress[p][2] / soil.x[p][0] : 0;
-  for (int d = 0; d < D; ++d) {
-    const Vec<D> stress = stress_row<D>(soil.stress[p], d);
+  const bool open = !S::affine && !s.soil_walls.folds(kernel.home());
+  for_components<D>([&](auto d) {
+    SoilShare<D> share{
+        {mass, grains, bulk, mass * soil.v[p][d]}, stress_row<D>(soil.stress[p], d), 0, resistivity};
+    for (double& component : share.stress) component *= -bulk;
+    if (S::axial && d == 0) share.hoop = -bulk * soil.stress[p][2] / soil.x[p][0];
+    if (open) {
+      for_rows(s.grid, kernel, d, [&](const auto& row) { add_row<D>(s.sums[d], row, share); });
+      return;
+    }
     for_faces(s.grid, s.soil_walls, kernel, d, [&](int face, const FaceWeight<D>& weight, double sign) {
       FaceSums& f = s.sums[d][face];
-      const double w = weight.w;
-      double divergence = 0;
-      for (int j = 0; j < D; ++j) divergence += stress[j] * weight.gradient[j];
-      if (S::axial && d == 0) divergence += w * hoop;
-      f.soil_mass += w * mass;
-      f.grains += w * grains;
-      f.soil_bulk += w * bulk;
-      f.soil_momentum += sign * w * mass * velocity_at_face<S>(soil, p, d, weight);
-      f.soil_force -= sign * bulk * divergence;  // [FMS19] eq. (1), ∇·σ′ in its weak form
-      f.resistivity += w * resistivity;
+      const double w = weight.w, momentum = sign * mass * velocity_at_face<S>(soil, p, d, weight);
+      double force = w * share.hoop;
+      for (int j = 0; j < D; ++j) force += share.stress[j] * weight.gradient[j];
+      add_lanes<4>(f.soil_mass, w * Lanes<4>{mass, grains, bulk, momentum});
+      add_lanes<2>(f.soil_force, Lanes<2>{sign * force, w * resistivity});
       if (sign < 0) s.image[d][face].soil += 2 * w * mass;
     });
-  }
-  // Room is measured with the water's own kernels, so that grains and water fold at the same walls.
-  for_centers(s.grid, s.water_walls, kernel, [&](int cell, double w) {
-    s.cell_sums[cell].grains += w * grains;
-    s.cell_sums[cell].soil_bulk += w * bulk;
   });
+  // Room is measured with the water's own kernels, so that grains and water fold at the same walls.
+  const Lanes<2> room{grains, bulk};
+  for_centers(s.grid, s.water_walls, kernel,
+              [&](int cell, double w) { add_lanes<2>(s.cell_sums[cell].grains, w * room); });
 }
 
-template <class S, int D>
-void water_to_faces(State<D>& s, std::uint32_t p) {
-  const PointKernel<D, typename S::Shape> kernel(s.grid, s.water.x[p]);
+template <class S, int D, class Kernel>
+void water_to_faces(State<D>& s, std::uint32_t p, const Kernel& kernel) {
   const double mass = s.water.mass[p], volume = mass / s.constants.water_density;
-  for (int d = 0; d < D; ++d) {
+  const bool open = !S::affine && !s.water_walls.folds(kernel.home());
+  for_components<D>([&](auto d) {
+    if (open) {
+      const Lanes<2> carried{mass, mass * s.water.v[p][d]};
+      for_rows(s.grid, kernel, d, [&](const auto& row) {
+        const Lanes<2> share = row.w * carried;
+        for (std::size_t i = 0; i < row.x.size(); ++i)
+          add_lanes<2>(s.sums[d][row.first + i].water_mass, row.x[i] * share);
+      });
+      return;
+    }
     for_faces(s.grid, s.water_walls, kernel, d, [&](int face, const FaceWeight<D>& weight, double sign) {
-      FaceSums& f = s.sums[d][face];
-      const double w = weight.w;
-      f.water_mass += w * mass;
-      f.water_momentum += sign * w * mass * velocity_at_face<S>(s.water, p, d, weight);
+      const double w = weight.w, momentum = sign * mass * velocity_at_face<S>(s.water, p, d, weight);
+      add_lanes<2>(s.sums[d][face].water_mass, w * Lanes<2>{mass, momentum});
       if (sign < 0) s.image[d][face].water += 2 * w * mass;
     });
-  }
+  });
   for_centers(s.grid, s.water_walls, kernel,
               [&](int cell, double w) { s.cell_sums[cell].water += w * volume; });
 }
@@ -101,11 +132,12 @@ void points_to_faces(State<D>& s) {
   });
   with_scheme(s, [&](auto scheme) {
     using S = decltype(scheme);
+    using Shape = typename S::Shape;
     s.blocks.by_color([&](int b) {
-      for (auto i = s.soil_blocks.begin[b]; i < s.soil_blocks.begin[b + 1]; ++i)
-        soil_to_faces<S>(s, s.soil_blocks.order[i]);
-      for (auto i = s.water_blocks.begin[b]; i < s.water_blocks.begin[b + 1]; ++i)
-        water_to_faces<S>(s, s.water_blocks.order[i]);
+      for_points<Shape>(s.grid, s.soil.x, s.soil_blocks, b,
+                        [&](std::uint32_t p, const auto& kernel) { soil_to_faces<S>(s, p, kernel); });
+      for_points<Shape>(s.grid, s.water.x, s.water_blocks, b,
+                        [&](std::uint32_t p, const auto& kernel) { water_to_faces<S>(s, p, kernel); });
     });
   });
   loads_to_faces(s);

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/step/batches.hpp"
 #include "engine/step/move_point.hpp"
 #include "engine/step/phases.hpp"
 #include "engine/step/scheme.hpp"
@@ -55,64 +56,106 @@ void add_slope(const Grid<D>& grid, const FaceWeight<D>& weight, double velocity
 /// Points of a surface at rest lie a quarter of a cell below it.
 constexpr double kFreeHeight = 0.25;
 
-template <class Shape, int D>
-bool falls_freely(const State<D>& s, const PointKernel<D, Shape>& kernel) {
-  if (s.cell[kernel.home].confined) return false;
+template <int D, class Kernel>
+bool falls_freely(const State<D>& s, const Kernel& kernel) {
+  if (s.cell[kernel.home()].confined) return false;
   double depth = 0;
   for_centers(s.grid, s.water_walls, kernel, [&](int c, double w) { depth += w * s.cell[c].depth; });
   return depth < -kFreeHeight;
 }
 
-/// Way of the water at x in dt by the midpoint rule; Euler's way leads out of every bend. `half` is half the
-/// way by the kernel's own velocity, near enough for the middle.
-template <class Shape, int D>
-Vec<D> path(const State<D>& s, int home, const Vec<D>& x, const Vec<D>& half, double dt) {
-  Vec<D> middle = x, way{};
-  move_point<D>(s.grid, s.water_walls, home, middle, half);
-  const PointKernel<D, typename Shape::Mover> kernel(s.grid, middle);
-  for (int d = 0; d < D; ++d)
-    for_faces(s.grid, s.water_walls, kernel, d, [&](int face, double w, double sign, const Vec<D>&) {
-      way[d] += dt * sign * w * s.speeds[d][face].water;
-    });
-  return way;
-}
-
-template <class S, int D>
-void water_from_faces(State<D>& s, std::uint32_t p, double dt, double pic, Totals<D>& totals) {
+/// Gives a water point its new velocity. Returns its way by the kernel's own velocity, m.
+template <class S, int D, class Kernel>
+Vec<D> new_water_velocity(State<D>& s, std::uint32_t p, const Kernel& kernel, bool falls, double dt,
+                          double pic, Totals<D>& totals) {
   WaterPoints<D>& water = s.water;
-  const PointKernel<D, typename S::Shape> kernel(s.grid, water.x[p]);
-  const bool falls = falls_freely(s, kernel);
-  Vec<D> step{};
+  Vec<D> step;
   double speed2 = 0;
-  for (int d = 0; d < D; ++d) {
-    double v_old = 0, v_new = 0, carried = 0;
+  const bool open = !S::affine && !falls && !s.water_walls.folds(kernel.home());
+  for_components<D>([&](auto d) {
+    double carried = 0;
+    Lanes<2> at_point{};  // before and after the step
     Vec<D> slope{};
-    for_faces(s.grid, s.water_walls, kernel, d, [&](int face, const FaceWeight<D>& weight, double sign) {
-      const FaceSpeeds& f = s.speeds[d][face];
-      const double lift =
-          falls && s.flow[d][face].wet > 1 ? f.water - f.water_old - dt * s.constants.fall(d) : 0;
-      v_old += sign * weight.w * f.water_old;
-      v_new += sign * weight.w * (f.water - lift);
-      carried += sign * weight.w * lift;
-      if constexpr (S::affine) add_slope<S, D>(s.grid, weight, sign * (f.water - lift), slope);
-    });
+    if (open)
+      for_rows(s.grid, kernel, d, [&](const auto& row) {
+        Lanes<2> sum{};
+        for (std::size_t i = 0; i < row.x.size(); ++i)
+          sum += row.x[i] * lanes_from<2>(s.speeds[d][row.first + i].water_old);
+        at_point += row.w * sum;
+      });
+    else
+      for_faces(s.grid, s.water_walls, kernel, d, [&](int face, const FaceWeight<D>& weight, double sign) {
+        Lanes<2> at_face = lanes_from<2>(s.speeds[d][face].water_old);
+        if (falls && s.flow[d][face].wet > 1) {
+          const double lift = at_face[1] - at_face[0] - dt * s.constants.fall(d);
+          at_face[1] -= lift;
+          carried += sign * weight.w * lift;
+        }
+        at_point += sign * weight.w * at_face;
+        if constexpr (S::affine) add_slope<S, D>(s.grid, weight, sign * at_face[1], slope);
+      });
     if constexpr (S::affine) water.affine[p][d] = slope;
     double& v = water.v[p][d];
-    v = mix<D>(v, v_old, v_new, pic);
+    v = mix<D>(v, at_point[0], at_point[1], pic);
     totals.let_go[d] -= water.mass[p] * carried;
-    step[d] = dt * v_new;
+    step[d] = dt * at_point[1];
     totals.momentum[d] += water.mass[p] * v;
     speed2 += v * v;
-  }
-  if (!falls) {
-    for (double& component : step) component *= 0.5;
-    step = path<typename S::Shape, D>(s, kernel.home, water.x[p], step, dt);
-  }
-  totals.interventions.clipped_points += move_point<D>(s.grid, s.water_walls, kernel.home, water.x[p], step);
+  });
   totals.mass += water.mass[p];
   totals.kinetic += 0.5 * water.mass[p] * speed2;
   totals.max_speed2 = std::max(totals.max_speed2, speed2);
   totals.finite = totals.finite && std::isfinite(speed2);
+  return step;
+}
+
+/// Way of the water in dt by the velocity that carries it, m.
+template <int D, class Kernel>
+Vec<D> carried_way(const State<D>& s, const Kernel& mover, double dt) {
+  Vec<D> way{};
+  const bool open = !s.water_walls.folds(mover.home());
+  for_components<D>([&](auto d) {
+    if (open)
+      for_rows(s.grid, mover, d, [&](const auto& row) {
+        double sum = 0;
+        for (std::size_t i = 0; i < row.x.size(); ++i) sum += row.x[i] * s.speeds[d][row.first + i].water;
+        way[d] += dt * row.w * sum;
+      });
+    else
+      for_faces(s.grid, s.water_walls, mover, d, [&](int face, double w, double sign, const Vec<D>&) {
+        way[d] += dt * sign * w * s.speeds[d][face].water;
+      });
+  });
+  return way;
+}
+
+/// Points move by the midpoint rule; Euler's way leads out of every bend. Half the way by the kernel's own
+/// velocity is near enough for the middle. Drops fall straight on.
+template <class S, int D>
+void water_from_faces(State<D>& s, const PointBatch<D, typename S::Shape>& batch, double dt, double pic,
+                      Totals<D>& totals) {
+  using Mover = KernelBatch<D, typename S::Shape::Mover>;
+  std::array<Vec<D>, Mover::size> step;
+  std::array<Lanes<Mover::size>, D> middle{};
+  std::array<bool, Mover::size> falls;
+  for (int k = 0; k < batch.count; ++k) {
+    const std::uint32_t p = batch.point[k];
+    const auto kernel = batch.kernel[k];
+    falls[k] = falls_freely(s, kernel);
+    step[k] = new_water_velocity<S>(s, p, kernel, falls[k], dt, pic, totals);
+    Vec<D> half = step[k];
+    for (double& component : half) component *= 0.5;
+    Vec<D> x = s.water.x[p];
+    move_point<D>(s.grid, s.water_walls, kernel.home(), x, half);
+    for (int d = 0; d < D; ++d) middle[d][k] = x[d];
+  }
+  Mover mover;
+  mover.find(s.grid, middle);
+  for (int k = 0; k < batch.count; ++k) {
+    if (!falls[k]) step[k] = carried_way(s, mover[k], dt);
+    totals.interventions.clipped_points +=
+        move_point<D>(s.grid, s.water_walls, batch.kernel[k].home(), s.water.x[batch.point[k]], step[k]);
+  }
 }
 
 /// Elastic energy of a soil point, J.
@@ -123,33 +166,47 @@ double strain_energy(const State<D>& s, std::size_t p) {
   return volume * material.energy<D>(soil_state(s.soil, p), n);
 }
 
-template <class S, int D>
-void soil_from_faces(State<D>& s, std::uint32_t p, double dt, double pic, Totals<D>& totals) {
+template <class S, int D, class Kernel>
+void soil_from_faces(State<D>& s, std::uint32_t p, const Kernel& kernel, double dt, double pic,
+                     Totals<D>& totals) {
   SoilPoints<D>& soil = s.soil;
   const SoilMaterial& material = s.constants.soils[soil.soil[p]];
-  const PointKernel<D, typename S::Shape> kernel(s.grid, soil.x[p]);
-  Vec<D> step{};
+  Vec<D> step;
   Gradient<D> l{};
   double speed2 = 0;
-  for (int d = 0; d < D; ++d) {
-    double v_old = 0, v_new = 0;
+  const bool open = !S::affine && !s.soil_walls.folds(kernel.home());
+  for_components<D>([&](auto d) {
+    Lanes<2> at_point{};  // before and after the step
     Vec<D> slope{};
-    for_faces(s.grid, s.soil_walls, kernel, d, [&](int face, const FaceWeight<D>& weight, double sign) {
-      const FaceSpeeds& f = s.speeds[d][face];
-      v_old += sign * weight.w * f.soil_old;
-      v_new += sign * weight.w * f.soil;
-      for (int j = 0; j < D; ++j) l[d][j] += sign * f.soil * weight.gradient[j];
-      if constexpr (S::affine) add_slope<S, D>(s.grid, weight, sign * f.soil, slope);
-    });
+    if (open)
+      for_rows(s.grid, kernel, d, [&](const auto& row) {
+        Lanes<2> sum{};
+        double difference = 0;
+        for (std::size_t i = 0; i < row.x.size(); ++i) {
+          const Lanes<2> at_face = lanes_from<2>(s.speeds[d][row.first + i].soil_old);
+          sum += row.x[i] * at_face;
+          difference += row.dx[i] * at_face[1];
+        }
+        at_point += row.w * sum;
+        l[d][0] += row.gradient[0] * difference;
+        for (int j = 1; j < D; ++j) l[d][j] += row.gradient[j] * sum[1];
+      });
+    else
+      for_faces(s.grid, s.soil_walls, kernel, d, [&](int face, const FaceWeight<D>& weight, double sign) {
+        const Lanes<2> at_face = sign * lanes_from<2>(s.speeds[d][face].soil_old);
+        at_point += weight.w * at_face;
+        for (int j = 0; j < D; ++j) l[d][j] += at_face[1] * weight.gradient[j];
+        if constexpr (S::affine) add_slope<S, D>(s.grid, weight, at_face[1], slope);
+      });
     if constexpr (S::affine) soil.affine[p][d] = slope;
     double& v = soil.v[p][d];
-    v = mix<D>(v, v_old, v_new, pic);
-    step[d] = dt * v_new;
+    v = mix<D>(v, at_point[0], at_point[1], pic);
+    step[d] = dt * at_point[1];
     totals.momentum[d] += soil.mass[p] * v;
     speed2 += v * v;
-  }
+  });
   const double hoop = S::axial ? step[0] / (dt * soil.x[p][0]) : 0;  // 1/s, v_r/r
-  totals.interventions.clipped_points += move_point<D>(s.grid, s.soil_walls, kernel.home, soil.x[p], step);
+  totals.interventions.clipped_points += move_point<D>(s.grid, s.soil_walls, kernel.home(), soil.x[p], step);
 
   // Dˢn/Dt = (1−n) ∇·vˢ, integrated: the grains' volume stays. A step that turns the soil has ∇·vˢ < 0, as
   // its chords lead inward of their arcs; the determinant knows.
@@ -170,7 +227,7 @@ void soil_from_faces(State<D>& s, std::uint32_t p, double dt, double pic, Totals
   const double touching = std::min(n, material.max_porosity);
   const double modulus = material.constrained_modulus<D>(state, touching);
   const StepLimit& limit = s.constants.step_limits[soil.soil[p]];
-  const bool confined = s.cell[kernel.home].confined;
+  const bool confined = s.cell[kernel.home()].confined;
   totals.soil_limit = std::min(totals.soil_limit,
                                confined ? limit.saturated(touching, modulus) : limit.dry(touching, modulus));
   if (s.constants.explicit_pressure)
@@ -212,12 +269,14 @@ void faces_to_points(State<D>& s, double dt, StepReport<D>& report) {
   report.damped = supports.damped;
   const Totals<D> totals = with_scheme(s, [&](auto scheme) {
     using S = decltype(scheme);
+    using Shape = typename S::Shape;
     return s.blocks.template sum<Totals<D>>([&](int b) {
       Totals<D> t;
-      for (auto i = s.soil_blocks.begin[b]; i < s.soil_blocks.begin[b + 1]; ++i)
-        soil_from_faces<S>(s, s.soil_blocks.order[i], dt, pic, t);
-      for (auto i = s.water_blocks.begin[b]; i < s.water_blocks.begin[b + 1]; ++i)
-        water_from_faces<S>(s, s.water_blocks.order[i], dt, pic, t);
+      for_points<Shape>(s.grid, s.soil.x, s.soil_blocks, b, [&](std::uint32_t p, const auto& kernel) {
+        soil_from_faces<S>(s, p, kernel, dt, pic, t);
+      });
+      for_batches<Shape>(s.grid, s.water.x, s.water_blocks, b,
+                         [&](const auto& batch) { water_from_faces<S>(s, batch, dt, pic, t); });
       return t;
     });
   });

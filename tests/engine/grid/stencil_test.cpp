@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
 #include <random>
+#include <vector>
 
 namespace quicksand {
 namespace {
@@ -139,6 +141,56 @@ TEST(Stencil, AffineWeightsFindTheSlopeOfALinearField) {
   expect_affine<3, QuadraticSpline>();
   expect_affine<2, LinearHat>();
   expect_affine<3, LinearHat>();
+}
+
+/// Kernels found lane by lane are those found one by one: anywhere, on faces, on the edge and beyond it.
+template <int D, class Shape>
+void expect_lanes_agree() {
+  constexpr int n = KernelBatch<D, Shape>::size;
+  const Grid<D> grid = some_grid<D>();
+  const Walls<D> open(grid);
+  std::vector<Vec<D>> places;
+  at_random_places(grid, 10 * n - 3, [&](const Vec<D>& x) { places.push_back(x); });
+  const double top = grid.origin[0] + grid.cells[0] * grid.h;
+  for (const double edge :
+       {grid.origin[0], grid.origin[0] + 2 * grid.h, top, grid.origin[0] - 0.1, top + 0.1}) {
+    places.push_back(places[0]);
+    places.back()[0] = edge;
+  }
+  for (std::size_t begin = 0; begin < places.size(); begin += n) {
+    const int count = static_cast<int>(std::min<std::size_t>(n, places.size() - begin));
+    std::array<Lanes<n>, D> x{};
+    for (int k = 0; k < count; ++k)
+      for (int d = 0; d < D; ++d) x[d][k] = places[begin + k][d];
+    KernelBatch<D, Shape> batch;
+    batch.find(grid, x);
+    for (int k = 0; k < count; ++k) {
+      const PointKernel<D, Shape> alone(grid, places[begin + k]);
+      ASSERT_EQ(batch[k].home(), alone.home());
+      std::map<int, std::pair<double, Vec<D>>> one, other;
+      for (int d = 0; d < D; ++d) {
+        one.clear(), other.clear();
+        for_faces(grid, open, alone, d, [&](int f, double w, double, const Vec<D>& g) { one[f] = {w, g}; });
+        for_faces(grid, open, batch[k], d, [&](int f, double w, double, const Vec<D>& g) {
+          other[f] = {w, g};
+        });
+        EXPECT_EQ(one, other);
+      }
+      std::map<int, double> centers, lanes;
+      for_centers(grid, open, alone, [&](int c, double w) { centers[c] = w; });
+      for_centers(grid, open, batch[k], [&](int c, double w) { lanes[c] = w; });
+      EXPECT_EQ(centers, lanes);
+    }
+  }
+}
+
+TEST(Stencil, KernelsInLanesAreThoseOfPointsAlone) {
+  expect_lanes_agree<2, QuadraticSpline>();
+  expect_lanes_agree<3, QuadraticSpline>();
+  expect_lanes_agree<2, LinearHat>();
+  expect_lanes_agree<2, SplineMover>();
+  expect_lanes_agree<3, SplineMover>();
+  expect_lanes_agree<2, HatMover>();
 }
 
 /// A smooth function of the face's index, so that the interpolated field is not linear.

@@ -1,0 +1,55 @@
+#pragma once
+// A few doubles that one instruction works on where the processor can. Arithmetic is that of the compiler's
+// vector types, element by element; where there are no such instructions it makes scalar code of it. What is
+// written for any T below works on a double and on lanes alike.
+
+/// Lanes go from function to function only inside others: how they are passed depends on the processor that a
+/// file is compiled for.
+#define QUICKSAND_INLINE inline __attribute__((always_inline))
+
+namespace quicksand {
+
+template <int N>
+struct LanesOf {
+  typedef double type __attribute__((vector_size(N * sizeof(double))));
+  typedef double anywhere __attribute__((vector_size(N * sizeof(double)), aligned(alignof(double))));
+  typedef int integers __attribute__((vector_size(N * sizeof(int))));
+};
+/// N doubles, N a power of two.
+template <int N>
+using Lanes = typename LanesOf<N>::type;
+template <int N>
+using IntLanes = typename LanesOf<N>::integers;
+
+/// The N doubles that begin with `first`, which lie one after the other.
+template <int N>
+QUICKSAND_INLINE Lanes<N> lanes_from(const double& first) {
+  return reinterpret_cast<const typename LanesOf<N>::anywhere&>(first);
+}
+template <int N>
+QUICKSAND_INLINE void put_lanes(double& first, const Lanes<N>& v) {
+  reinterpret_cast<typename LanesOf<N>::anywhere&>(first) = v;
+}
+template <int N>
+QUICKSAND_INLINE void add_lanes(double& first, const Lanes<N>& v) {
+  put_lanes<N>(first, lanes_from<N>(first) + v);
+}
+
+/// v in every lane.
+template <class T>
+QUICKSAND_INLINE T all_lanes(double v) {
+  return T{} + v;
+}
+/// a where the mask is true, else b.
+QUICKSAND_INLINE double where(bool mask, double a, double b) { return mask ? a : b; }
+template <class Mask, class T>
+QUICKSAND_INLINE T where(const Mask& mask, const T& a, const T& b) {
+  return mask ? a : b;
+}
+template <class T>
+QUICKSAND_INLINE T clamped(const T& v, const T& low, const T& high) {
+  const T above = where(v > low, v, low);  // not a number becomes `low`
+  return where(above < high, above, high);
+}
+
+}  // namespace quicksand
