@@ -112,9 +112,18 @@ inline void for_rows(const Grid<D>& grid, const Kernel& k, Component, F&& f) {
 
 /// f(d) for all components, each as a type with the number as `value`.
 template <int D, class F>
-inline void for_components(F&& f) {
+QUICKSAND_INLINE void for_components(F&& f) {
   f(std::integral_constant<int, 0>{}), f(std::integral_constant<int, 1>{});
   if constexpr (D == 3) f(std::integral_constant<int, 2>{});
+}
+/// The vector of f(d).
+template <int D, class F>
+QUICKSAND_INLINE Vec<D> from_components(F&& f) {
+  if constexpr (D == 2)
+    return {f(std::integral_constant<int, 0>{}), f(std::integral_constant<int, 1>{})};
+  else
+    return {f(std::integral_constant<int, 0>{}), f(std::integral_constant<int, 1>{}),
+            f(std::integral_constant<int, 2>{})};
 }
 
 namespace stencil {

@@ -14,7 +14,7 @@ struct Face {
   int i, j;
 };
 
-double yield(const MohrCoulomb& law, const std::array<double, 3>& s, Face f) {
+double excess(const MohrCoulomb& law, const std::array<double, 3>& s, Face f) {
   return (s[f.i] - s[f.j]) + (s[f.i] + s[f.j]) * law.sin_phi - 2 * law.cohesion * law.cos_phi;
 }
 
@@ -48,12 +48,6 @@ MohrCoulombReturn relax(const MohrCoulomb& law, const Elastic& e, const std::arr
   return r;
 }
 
-/// Whether no stress within the bounds yields.
-bool surely_inside(const MohrCoulomb& law, const PrincipalBounds& s) {
-  return s.largest * (1 + law.sin_phi) - s.smallest * (1 - law.sin_phi) <= 2 * law.cohesion * law.cos_phi &&
-         s.largest <= law.tension;
-}
-
 bool sorted(const std::array<double, 3>& s, double tolerance) {
   return s[0] >= s[1] - tolerance && s[1] >= s[2] - tolerance;
 }
@@ -61,7 +55,7 @@ bool sorted(const std::array<double, 3>& s, double tolerance) {
 MohrCoulombReturn return_to_edge(const MohrCoulomb& law, const Elastic& e, const std::array<double, 3>& trial,
                                  Face second, YieldRegion region) {
   const Face first{0, 2};
-  const double f1 = yield(law, trial, first), f2 = yield(law, trial, second);
+  const double f1 = excess(law, trial, first), f2 = excess(law, trial, second);
   const double a11 = stiffness(law, e, first, first), a12 = stiffness(law, e, first, second);
   const double a21 = stiffness(law, e, second, first), a22 = stiffness(law, e, second, second);
   const double det = a11 * a22 - a12 * a21;
@@ -101,7 +95,7 @@ MohrCoulombReturn return_to_pyramid(const MohrCoulomb& law, const Elastic& e,
 
 MohrCoulombReturn return_map(const MohrCoulomb& law, const Elastic& e, const std::array<double, 3>& trial) {
   const double scale = std::abs(trial[0]) + std::abs(trial[2]) + law.cohesion;
-  const double f = yield(law, trial, Face{0, 2});
+  const double f = excess(law, trial, Face{0, 2});
   const MohrCoulombReturn r = f <= 1e-14 * scale ? MohrCoulombReturn{trial, {}, YieldRegion::elastic}
                                                  : return_to_pyramid(law, e, trial, f, scale);
   // Where shear alone leaves no stress above the cut-off, its planes take no part.
@@ -149,27 +143,16 @@ void MohrCoulombLaw::check(const SoilModel& m, ModelFaults& faults) {
     faults.push_back({"softening_strain", "has no effect without residual_cohesion: remove it"});
 }
 
-MohrCoulomb MohrCoulombLaw::strength(double plastic_strain) const {
-  MohrCoulomb now = peak;
-  if (softening_strain > 0)
-    now.cohesion += (residual_cohesion - peak.cohesion) * std::min(1.0, plastic_strain / softening_strain);
-  return now;
-}
-
 template <int D>
-int MohrCoulombLaw::update(SoilState<D>& state, const Strain<D>& strain, double /*porosity*/) const {
-  state.stress = elastic.stretched(state.stress, strain);
-  const MohrCoulomb now = strength(state.plastic_strain);
-  if (surely_inside(now, principal_bounds<D>(state.stress))) return 0;
+void MohrCoulombLaw::yield(const MohrCoulomb& now, SoilState<D>& state) const {
   const Principal trial = principal<D>(state.stress);
   const MohrCoulombReturn r = return_map(now, elastic, trial.value);
-  if (r.region == YieldRegion::elastic) return 0;
+  if (r.region == YieldRegion::elastic) return;
   state.stress = with_values<D>(trial, r.stress);
   state.plastic_strain += std::sqrt(2.0 / 3.0 * contracted(deviator(r.plastic_strain)));
-  return 0;
 }
 
-template int MohrCoulombLaw::update<2>(SoilState<2>&, const Strain<2>&, double) const;
-template int MohrCoulombLaw::update<3>(SoilState<3>&, const Strain<3>&, double) const;
+template void MohrCoulombLaw::yield<2>(const MohrCoulomb&, SoilState<2>&) const;
+template void MohrCoulombLaw::yield<3>(const MohrCoulomb&, SoilState<3>&) const;
 
 }  // namespace quicksand

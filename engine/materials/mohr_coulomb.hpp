@@ -54,7 +54,12 @@ struct MohrCoulombLaw {
   static MohrCoulombLaw from(const SoilModel& model);
   static void check(const SoilModel& model, ModelFaults& faults);
 
-  MohrCoulomb strength(double plastic_strain) const;
+  MohrCoulomb strength(double plastic_strain) const {
+    MohrCoulomb now = peak;
+    if (softening_strain > 0)
+      now.cohesion += (residual_cohesion - peak.cohesion) * std::min(1.0, plastic_strain / softening_strain);
+    return now;
+  }
 
   template <int D>
   double constrained_modulus(const SoilState<D>&, double /*porosity*/) const {
@@ -67,11 +72,26 @@ struct MohrCoulombLaw {
     return 0;
   }
   template <int D>
-  int update(SoilState<D>& state, const Strain<D>& strain, double porosity) const;
+  int update(SoilState<D>& state, const Strain<D>& strain, double /*porosity*/) const {
+    state.stress = elastic.stretched(state.stress, strain);
+    const MohrCoulomb now = strength(state.plastic_strain);
+    if (!surely_inside(now, principal_bounds<D>(state.stress))) yield(now, state);
+    return 0;
+  }
   template <int D>
   double energy(const SoilState<D>& state, double /*porosity*/) const {
     return elastic.energy(state.stress);
   }
+
+ private:
+  /// Whether no stress within the bounds yields.
+  static bool surely_inside(const MohrCoulomb& law, const PrincipalBounds& s) {
+    return s.largest * (1 + law.sin_phi) - s.smallest * (1 - law.sin_phi) <= 2 * law.cohesion * law.cos_phi &&
+           s.largest <= law.tension;
+  }
+  /// Brings a trial stress back, if it yields.
+  template <int D>
+  void yield(const MohrCoulomb& now, SoilState<D>& state) const;
 };
 
 }  // namespace quicksand

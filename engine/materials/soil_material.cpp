@@ -5,7 +5,7 @@ namespace {
 
 /// f(L{}) with the law that the model names.
 template <class F>
-auto with_law(const SoilModel& model, F&& f) {
+auto with_named_law(const SoilModel& model, F&& f) {
   switch (model.law) {
     case SoilLaw::mohr_coulomb:
       return f(MohrCoulombLaw{});
@@ -21,7 +21,7 @@ auto with_law(const SoilModel& model, F&& f) {
 
 SoilMaterial SoilMaterial::from(const Soil& soil, const Water& water) {
   SoilMaterial m;
-  m.law = with_law(soil.model, [&](auto law) { return Law(decltype(law)::from(soil.model)); });
+  m.law = with_named_law(soil.model, [&](auto law) { return Law(decltype(law)::from(soil.model)); });
   m.drag = Drag::from(soil, water);
   m.grain_density = soil.grain_density;
   m.porosity = soil.porosity;
@@ -33,12 +33,12 @@ SoilMaterial SoilMaterial::from(const Soil& soil, const Water& water) {
 
 ModelFaults check_model(const SoilModel& model) {
   ModelFaults faults;
-  with_law(model, [&](auto law) { decltype(law)::check(model, faults); });
+  with_named_law(model, [&](auto law) { decltype(law)::check(model, faults); });
   return faults;
 }
 
 bool needs_initial_stress(const SoilModel& model) {
-  return with_law(model, [](auto law) { return law.kNeedsStress; });
+  return with_named_law(model, [](auto law) { return law.kNeedsStress; });
 }
 
 }  // namespace quicksand

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/grid/lanes.hpp"
 #include "engine/points/points.hpp"
 
 namespace quicksand {

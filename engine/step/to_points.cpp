@@ -72,7 +72,7 @@ Vec<D> new_water_velocity(State<D>& s, std::uint32_t p, const Kernel& kernel, bo
   Vec<D> step;
   double speed2 = 0;
   const bool open = !S::affine && !falls && !s.water_walls.folds(kernel.home());
-  for_components<D>([&](auto d) {
+  for_components<D>([&](auto d) __attribute__((always_inline)) {
     double carried = 0;
     Lanes<2> at_point{};  // before and after the step
     Vec<D> slope{};
@@ -111,22 +111,22 @@ Vec<D> new_water_velocity(State<D>& s, std::uint32_t p, const Kernel& kernel, bo
 
 /// Way of the water in dt by the velocity that carries it, m.
 template <int D, class Kernel>
-Vec<D> carried_way(const State<D>& s, const Kernel& mover, double dt) {
-  Vec<D> way{};
+QUICKSAND_INLINE Vec<D> carried_way(const State<D>& s, const Kernel& mover, double dt) {
   const bool open = !s.water_walls.folds(mover.home());
-  for_components<D>([&](auto d) {
+  return from_components<D>([&](auto d) {
+    double v = 0;
     if (open)
       for_rows(s.grid, mover, d, [&](const auto& row) {
         double sum = 0;
         for (std::size_t i = 0; i < row.x.size(); ++i) sum += row.x[i] * s.speeds[d][row.first + i].water;
-        way[d] += dt * row.w * sum;
+        v += row.w * sum;
       });
     else
       for_faces(s.grid, s.water_walls, mover, d, [&](int face, double w, double sign, const Vec<D>&) {
-        way[d] += dt * sign * w * s.speeds[d][face].water;
+        v += sign * w * s.speeds[d][face].water;
       });
+    return dt * v;
   });
-  return way;
 }
 
 /// Points move by the midpoint rule; Euler's way leads out of every bend. Half the way by the kernel's own
@@ -152,9 +152,9 @@ void water_from_faces(State<D>& s, const PointBatch<D, typename S::Shape>& batch
   Mover mover;
   mover.find(s.grid, middle);
   for (int k = 0; k < batch.count; ++k) {
-    if (!falls[k]) step[k] = carried_way(s, mover[k], dt);
+    const Vec<D> way = falls[k] ? step[k] : carried_way(s, mover[k], dt);
     totals.interventions.clipped_points +=
-        move_point<D>(s.grid, s.water_walls, batch.kernel[k].home(), s.water.x[batch.point[k]], step[k]);
+        move_point<D>(s.grid, s.water_walls, batch.kernel[k].home(), s.water.x[batch.point[k]], way);
   }
 }
 
@@ -175,7 +175,7 @@ void soil_from_faces(State<D>& s, std::uint32_t p, const Kernel& kernel, double 
   Gradient<D> l{};
   double speed2 = 0;
   const bool open = !S::affine && !s.soil_walls.folds(kernel.home());
-  for_components<D>([&](auto d) {
+  for_components<D>([&](auto d) __attribute__((always_inline)) {
     Lanes<2> at_point{};  // before and after the step
     Vec<D> slope{};
     if (open)
