@@ -205,6 +205,18 @@ void Multigrid<D>::apply(const std::vector<double>& in, std::vector<double>& out
   std::copy(fine.x.begin(), fine.x.end(), out.begin());
 }
 
+template <int D>
+double Multigrid<D>::bytes() const {
+  std::size_t sum = cells_.capacity() * sizeof(int);
+  for (const Level& l : levels_) {
+    sum += l.rows.capacity() * sizeof(Row) + l.place.capacity() * sizeof(Cell<D>) +
+           l.children.capacity() * sizeof(l.children[0]) + (l.x.capacity() + l.b.capacity()) * sizeof(double);
+    for (const auto* of_rows : {&l.colored[0], &l.colored[1], &l.parent})
+      sum += of_rows->capacity() * sizeof(int);
+  }
+  return static_cast<double>(sum);
+}
+
 template class Multigrid<2>;
 template class Multigrid<3>;
 

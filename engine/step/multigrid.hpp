@@ -26,6 +26,8 @@ class Multigrid {
   /// y = A x of the finest level.
   void multiply(const std::vector<double>& x, std::vector<double>& y) const;
   std::size_t levels() const { return levels_.size(); }
+  /// What the levels take, bytes.
+  double bytes() const;
 
  private:
   static constexpr int kSides = 2 * D, kChildren = 1 << D;

@@ -1,5 +1,8 @@
 #pragma once
-// What a state holds, by part: the bytes of its arrays.
+// What a state holds, by part: the bytes of its arrays, of those over the lattice the pages that are there.
+
+#include <sys/mman.h>
+#include <unistd.h>
 
 #include <string>
 #include <utility>
@@ -15,8 +18,19 @@ template <class T>
 double bytes_of(const std::vector<T>& v) {
   return static_cast<double>(v.capacity() * sizeof(T));
 }
-template <class T, std::size_t N>
-double bytes_of(const std::array<std::vector<T>, N>& arrays) {
+template <class T>
+double bytes_of(const Field<T>& field) {
+  if (field.empty()) return 0;
+  const auto page = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+  std::vector<unsigned char> there((field.capacity() * sizeof(T) + page - 1) / page);
+  // Fields begin on a page.
+  if (mincore(const_cast<T*>(field.data()), field.capacity() * sizeof(T), there.data()) != 0) return 0;
+  double pages = 0;
+  for (const unsigned char p : there) pages += p & 1;
+  return pages * static_cast<double>(page);
+}
+template <class Array, std::size_t N>
+double bytes_of(const std::array<Array, N>& arrays) {
   double sum = 0;
   for (const auto& v : arrays) sum += bytes_of(v);
   return sum;
@@ -38,11 +52,12 @@ Allocated allocated(const State<D>& s) {
   return {
       {"soil points", bytes_of_points(s.soil) + bytes_of_points(s.fixed)},
       {"water points", bytes_of_points(s.water)},
-      {"order",
-       bytes_of_all(s.soil_blocks.order, s.soil_blocks.begin, s.water_blocks.order, s.water_blocks.begin)},
-      {"faces", bytes_of_all(s.sums, s.image, s.follower, s.flow, s.fixed_face, s.port_of)},
+      {"order", bytes_of_all(s.soil_blocks.order, s.soil_blocks.begin, s.soil_blocks.key,
+                             s.water_blocks.order, s.water_blocks.begin, s.water_blocks.key)},
+      {"faces", bytes_of_all(s.sums, s.image, s.follower, s.flow, s.speeds, s.fixed_face, s.port_of)},
       {"cells", bytes_of_all(s.cell_sums, s.fixed_cell, s.cell, s.pressure, s.pressure_old)},
       {"pressure system", bytes_of_all(m.cell, m.diagonal, m.rhs, m.solution, m.upper, m.lower, m.coupling)},
+      {"multigrid", s.multigrid.bytes()},
   };
 }
 
