@@ -145,10 +145,10 @@ void MohrCoulombLaw::check(const SoilModel& m, ModelFaults& faults) {
 
 template <int D>
 void MohrCoulombLaw::yield(const MohrCoulomb& now, SoilState<D>& state) const {
-  const Principal trial = principal<D>(state.stress);
+  const Principal<D> trial = principal(state.stress);
   const MohrCoulombReturn r = return_map(now, elastic, trial.value);
   if (r.region == YieldRegion::elastic) return;
-  state.stress = with_values<D>(trial, r.stress);
+  state.stress = with_values(trial, r.stress);
   state.plastic_strain += std::sqrt(2.0 / 3.0 * contracted(deviator(r.plastic_strain)));
 }
 

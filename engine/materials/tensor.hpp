@@ -107,15 +107,38 @@ PrincipalBounds principal_bounds(const Stress<D>& s) {
   }
 }
 
-/// Principal values in descending order with their directions as columns.
-struct Principal {
+/// Principal values in descending order, and where they point.
+template <int D>
+struct Principal;
+/// In the plane z is principal; the other two are given by twice the angle of the larger one from x.
+template <>
+struct Principal<2> {
   std::array<double, 3> value;
-  Eigen::Matrix3d direction;
+  std::array<int, 3> place;  ///< in `value`, of the larger and the smaller one in the plane and of z
+  double cos2, sin2;
 };
-template <int D>
-Principal principal(const Stress<D>& s);
+template <>
+struct Principal<3> {
+  std::array<double, 3> value;
+  Eigen::Matrix3d direction;  ///< columns
+};
+
+inline Principal<2> principal(const Stress<2>& s) {
+  const double mean = 0.5 * (s[0] + s[1]), half = 0.5 * (s[0] - s[1]);
+  const double radius = std::sqrt(half * half + s[3] * s[3]), larger = mean + radius, smaller = mean - radius;
+  const double cos2 = radius > 0 ? half / radius : 1, sin2 = radius > 0 ? s[3] / radius : 0;
+  if (s[2] >= larger) return {{s[2], larger, smaller}, {1, 2, 0}, cos2, sin2};
+  if (s[2] >= smaller) return {{larger, s[2], smaller}, {0, 2, 1}, cos2, sin2};
+  return {{larger, smaller, s[2]}, {0, 1, 2}, cos2, sin2};
+}
+Principal<3> principal(const Stress<3>& s);
+
 /// The tensor with other principal values in the same directions.
-template <int D>
-Stress<D> with_values(const Principal& p, const std::array<double, 3>& value);
+inline Stress<2> with_values(const Principal<2>& p, const std::array<double, 3>& value) {
+  const double larger = value[p.place[0]], smaller = value[p.place[1]];
+  const double mean = 0.5 * (larger + smaller), radius = 0.5 * (larger - smaller);
+  return {mean + radius * p.cos2, mean - radius * p.cos2, value[p.place[2]], radius * p.sin2};
+}
+Stress<3> with_values(const Principal<3>& p, const std::array<double, 3>& value);
 
 }  // namespace quicksand
