@@ -3,6 +3,7 @@
 
 #include "engine/run/sampling.hpp"
 #include "engine/run/watch.hpp"
+#include "engine/step/phases.hpp"
 
 namespace quicksand {
 namespace {
@@ -87,7 +88,7 @@ template <int D>
 void LedgerKeeper<D>::measure(const State<D>& s, const StepReport<D>& step) {
   Ledger& l = ledger_;
   l.energy_kinetic = step.kinetic;
-  l.energy_strain = step.strain;
+  l.energy_strain = strain_energy(s);
   l.water_mass = total(s.water.mass);
   l.solid_mass = total(s.soil.mass) + total(s.fixed.mass);
   l.water_volume = water_volume(s);

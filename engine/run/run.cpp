@@ -120,7 +120,7 @@ class Run {
     iterations_ += last_.pressure.iterations;
     if (!last_.finite) return fail(not_finite(scene_, state_));
     ledger_.add(state_, last_);
-    inertia_.add(state_.time, last_);
+    inertia_.add(state_, last_);
     watch_.track(state_);
     if (!last_.pressure.converged) return fail(pressure_not_found(scene_, state_, last_.pressure.residual));
     if (due(last_sample_time_, scene_.output.series_interval)) write_sample();

@@ -7,6 +7,7 @@
 #include "engine/points/seeding.hpp"
 #include "engine/run/initial_state.hpp"
 #include "engine/run/surface_load.hpp"
+#include "engine/scene/stages.hpp"
 #include "engine/step/phases.hpp"
 
 namespace quicksand {
@@ -153,6 +154,8 @@ State<D> make_state(const Scene& scene) {
   s.soil = std::move(points.soil);
   s.fixed = std::move(points.fixed);
   s.water = std::move(points.water);
+  s.has_water = has_water(scene);
+  s.has_soil = s.soil.size() + s.fixed.size() > 0;
   keep_discharge(s, s.soil), keep_discharge(s, s.fixed);
   for (int d = 0; d < D; ++d) {
     s.sums[d] = Field<FaceSums>(s.grid.count());

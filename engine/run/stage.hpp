@@ -7,6 +7,7 @@
 #include "engine/plan/quasi_static.hpp"
 #include "engine/run/removal.hpp"
 #include "engine/run/run.hpp"
+#include "engine/step/phases.hpp"
 #include "engine/step/step.hpp"
 
 namespace quicksand {
@@ -35,10 +36,10 @@ class InertiaWatch {
  public:
   void begin(const Scene& scene, std::size_t stage, double time);
   template <int D>
-  void add(double time, const StepReport<D>& step) {
-    if (!active_ || time < settled_) return;
+  void add(const State<D>& s, const StepReport<D>& step) {
+    if (!active_ || s.time < settled_) return;
     QuasiStaticReport& r = reports_.back();
-    r.inertia_ratio = std::max(r.inertia_ratio, quicksand::inertia_ratio(step.kinetic, step.strain));
+    r.inertia_ratio = std::max(r.inertia_ratio, quicksand::inertia_ratio(step.kinetic, strain_energy(s)));
     r.negligible = r.inertia_ratio <= kNegligibleInertia;
   }
   const std::vector<QuasiStaticReport>& reports() const { return reports_; }

@@ -221,7 +221,7 @@ std::vector<double> Watch<D>::sample(const State<D>& s, const StepReport<D>& ste
                          static_cast<double>(step.pressure.iterations), step.max_speed, step.max_soil_speed});
   if (quasi_static_) {
     out.push_back(s.constants.inertia);
-    out.push_back(inertia_ratio(step.kinetic, step.strain));
+    out.push_back(inertia_ratio(l.energy_kinetic, l.energy_strain));
   }
   sample_rise(s.time);
   return out;

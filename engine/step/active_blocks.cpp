@@ -18,6 +18,7 @@ void forget(State<D>& s, int block) {
       s.soil_walls.commit_separated(d, i);
     }
     s.cell_sums[i] = {};
+    if (!s.has_water) return;
     s.cell[i] = {};
     s.pressure[i] = s.pressure_old[i] = 0;
   });

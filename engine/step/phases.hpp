@@ -103,9 +103,12 @@ bool submerged(const State<D>& s, int d, int face) {
   return port && port->submerged();
 }
 
-/// Momentum, energies, mass and largest speeds of the points as they are → `report`.
+/// Momentum, kinetic energy, mass and largest speeds of the points as they are → `report`.
 template <int D>
 void measure_motion(const State<D>& s, StepReport<D>& report);
+/// Elastic energy of the moving grains, J.
+template <int D>
+double strain_energy(const State<D>& s);
 inline constexpr int kPlateAxis = 1;  ///< plates are horizontal
 /// Whether a face moves with a plate.
 template <int D>

@@ -134,6 +134,7 @@ void advance_explicitly(PressureSystem<D>& m) {
 
 template <int D>
 PressureReport solve_pressure(State<D>& s, double dt) {
+  if (!s.has_water) return {};
   PressureSystem<D>& system = s.pressure_system;
   number_rows(s, system);
   if (system.cell.empty()) return {};

@@ -27,4 +27,16 @@ auto with_scheme(const State<D>& s, F&& f) {
   });
 }
 
+/// What a scene holds.
+template <bool with_soil, bool with_water>
+struct Phases {
+  static constexpr bool soil = with_soil, water = with_water;
+};
+/// f(Phases): a dry scene, or one of water alone, runs what only it needs.
+template <int D, class F>
+decltype(auto) with_phases(const State<D>& s, F&& f) {
+  if (!s.has_water) return f(Phases<true, false>{});
+  return s.has_soil ? f(Phases<true, true>{}) : f(Phases<false, true>{});
+}
+
 }  // namespace quicksand

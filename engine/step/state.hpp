@@ -228,8 +228,10 @@ struct State {
   Walls<D> soil_walls;   ///< the same and the surfaces of fixed soil
   Constants<D> constants;
 
-  SoilPoints<D> soil;   ///< moving grains
-  SoilPoints<D> fixed;  ///< grains held in place
+  bool has_water = false;  ///< there is water, or it can come in; else all that is about water stays zero
+  bool has_soil = false;   ///< there are grains, moving or fixed
+  SoilPoints<D> soil;      ///< moving grains
+  SoilPoints<D> fixed;     ///< grains held in place
   WaterPoints<D> water;
   std::vector<char> removed;  ///< per body, whether a stage took it away; empty while none did
   BlockList soil_blocks, water_blocks;

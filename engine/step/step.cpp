@@ -44,6 +44,7 @@ class Stopwatch {
 
 template <int D>
 void copy_pressure(const State<D>& s, const Field<double>& from, Field<double>& to) {
+  if (!s.has_water) return;
   s.blocks.all(
       [&](int b) { s.blocks.cells(s.grid, b, false, [&](int i, const Cell<D>&) { to[i] = from[i]; }); });
 }

@@ -18,7 +18,7 @@ struct StepReport {
   Vec<D> impulse_damping{};                                    ///< N·s in this step
   double damped = 0;                                           ///< J, taken by damping in this step
   Exchange<D> exchange;                                        ///< through ports, in this step
-  double kinetic = 0, strain = 0;                              ///< J
+  double kinetic = 0;                                          ///< J
   double soil_limit = 0;  ///< s, smallest stable step of any soil point; infinite without
   /// s, smallest StepLimit::fast_wave of any soil point; infinite unless the pressure is explicit
   double fast_wave_limit = std::numeric_limits<double>::infinity();

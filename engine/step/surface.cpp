@@ -31,6 +31,7 @@ double depth_of_fill(QuadraticSpline, double fill) {
 
 template <int D>
 void find_surface(State<D>& s) {
+  if (!s.has_water) return;
   s.blocks.all([&](int b) {
     s.blocks.cells(s.grid, b, false, [&](int i, const Cell<D>&) {
       const CellSums& sums = s.cell_sums[i];

@@ -62,7 +62,7 @@ void soil_to_faces(State<D>& s, std::uint32_t p, const Kernel& kernel) {
   const SoilMaterial& material = s.constants.soils[soil.soil[p]];
   const double mass = soil.mass[p], n = soil.porosity[p];
   const double grains = mass / material.grain_density, bulk = grains / (1 - n);
-  const double resistivity = s.water.size() ? bulk * material.drag.resistivity(n, discharge_of(soil, p)) : 0;
+  const double resistivity = s.has_water ? bulk * material.drag.resistivity(n, discharge_of(soil, p)) : 0;
   const bool open = !S::affine && !s.soil_walls.folds(kernel.home());
   for_components<D>([&](auto d) {
     SoilShare<D> share{
@@ -124,7 +124,8 @@ void points_to_faces(State<D>& s) {
     s.blocks.cells(s.grid, b, true, [&](int i, const Cell<D>&) {
       for (int d = 0; d < D; ++d) {
         s.sums[d][i] = {};
-        s.image[d][i] = {};
+        FaceImage& image = s.image[d][i];  // but beside walls it stays as it is, untouched in memory
+        if (image.soil != 0 || image.water != 0) image = {};
         s.soil_walls.commit_separated(d, i);
       }
       s.cell_sums[i] = has_fixed ? s.fixed_cell[i] : CellSums{};

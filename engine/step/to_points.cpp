@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "engine/step/batches.hpp"
+#include "engine/step/chunks.hpp"
 #include "engine/step/move_point.hpp"
 #include "engine/step/phases.hpp"
 #include "engine/step/scheme.hpp"
@@ -17,7 +18,7 @@ template <int D>
 struct Totals {
   Vec<D> momentum{};
   Vec<D> let_go{};  ///< N·s, what the surface did not give to drops that fall freely
-  double mass = 0, kinetic = 0, strain = 0, max_speed2 = 0, max_soil_speed2 = 0;
+  double mass = 0, kinetic = 0, max_speed2 = 0, max_soil_speed2 = 0;
   double soil_limit = std::numeric_limits<double>::infinity();       ///< s
   double fast_wave_limit = std::numeric_limits<double>::infinity();  ///< s
   Interventions interventions;
@@ -26,7 +27,6 @@ struct Totals {
     for (int d = 0; d < D; ++d) momentum[d] += o.momentum[d], let_go[d] += o.let_go[d];
     mass += o.mass;
     kinetic += o.kinetic;
-    strain += o.strain;
     max_speed2 = std::max(max_speed2, o.max_speed2);
     max_soil_speed2 = std::max(max_soil_speed2, o.max_soil_speed2);
     soil_limit = std::min(soil_limit, o.soil_limit);
@@ -158,14 +158,6 @@ void water_from_faces(State<D>& s, const PointBatch<D, typename S::Shape>& batch
   }
 }
 
-/// Elastic energy of a soil point, J.
-template <int D>
-double strain_energy(const State<D>& s, std::size_t p) {
-  const SoilMaterial& material = s.constants.soils[s.soil.soil[p]];
-  const double n = s.soil.porosity[p], volume = s.soil.mass[p] / (material.grain_density * (1 - n));
-  return volume * material.energy<D>(soil_state(s.soil, p), n);
-}
-
 template <class S, int D, class Kernel>
 void soil_from_faces(State<D>& s, std::uint32_t p, const Kernel& kernel, double dt, double pic,
                      Totals<D>& totals) {
@@ -232,13 +224,11 @@ void soil_from_faces(State<D>& s, std::uint32_t p, const Kernel& kernel, double 
                                confined ? limit.saturated(touching, modulus) : limit.dry(touching, modulus));
   if (s.constants.explicit_pressure)
     totals.fast_wave_limit = std::min(totals.fast_wave_limit, limit.fast_wave(touching, modulus));
-  const double strain = strain_energy(s, p);
-  totals.strain += strain;
   totals.mass += soil.mass[p];
   totals.kinetic += 0.5 * soil.mass[p] * speed2;
   totals.max_speed2 = std::max(totals.max_speed2, speed2);
   totals.max_soil_speed2 = std::max(totals.max_soil_speed2, speed2);
-  totals.finite = totals.finite && std::isfinite(speed2) && std::isfinite(strain);
+  totals.finite = totals.finite && std::isfinite(speed2) && std::isfinite(trace(state.stress));
 }
 
 template <int D>
@@ -288,7 +278,6 @@ void faces_to_points(State<D>& s, double dt, StepReport<D>& report) {
   }
   report.moving_mass = totals.mass;
   report.kinetic = inertia * totals.kinetic;
-  report.strain = totals.strain;
   report.max_speed = std::sqrt(totals.max_speed2);
   report.max_soil_speed = std::sqrt(totals.max_soil_speed2);
   report.soil_limit = totals.soil_limit;
@@ -312,9 +301,26 @@ void measure_motion(const State<D>& s, StepReport<D>& report) {
   add(s.soil);
   report.max_soil_speed = report.max_speed;
   add(s.water);
-  for (std::size_t p = 0; p < s.soil.size(); ++p) report.strain += strain_energy(s, p);
 }
 
+template <int D>
+double strain_energy(const State<D>& s) {
+  return reduce_chunks(
+      s.soil.size(), 0.0,
+      [&](std::size_t begin, std::size_t end) {
+        double sum = 0;
+        for (std::size_t p = begin; p < end; ++p) {
+          const SoilMaterial& material = s.constants.soils[s.soil.soil[p]];
+          const double n = s.soil.porosity[p], volume = s.soil.mass[p] / (material.grain_density * (1 - n));
+          sum += volume * material.energy<D>(soil_state(s.soil, p), n);
+        }
+        return sum;
+      },
+      [](double a, double b) { return a + b; });
+}
+
+template double strain_energy<2>(const State<2>&);
+template double strain_energy<3>(const State<3>&);
 template void measure_motion<2>(const State<2>&, StepReport<2>&);
 template void measure_motion<3>(const State<3>&, StepReport<3>&);
 template void faces_to_points<2>(State<2>&, double, StepReport<2>&);

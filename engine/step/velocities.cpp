@@ -5,6 +5,7 @@
 
 #include "engine/step/damping.hpp"
 #include "engine/step/phases.hpp"
+#include "engine/step/scheme.hpp"
 
 namespace quicksand {
 
@@ -165,56 +166,57 @@ double pushed_part(double phi, double resistivity, double fixed_phi, double fixe
   return (phi + fixed_phi) * resistivity / (resistivity + fixed_resistivity);
 }
 
-template <int D>
+template <class P, int D>
 void predict_face(State<D>& s, int d, int face, double dt) {
   const FaceSums& sums = s.sums[d][face];
   FaceFlow& f = s.flow[d][face];
   f = {};
   const double volume = s.volume.face(d, face), rho = s.constants.water_density;
   const double inertia = s.constants.inertia, fall = s.constants.fall(d);
-  const bool soil = sums.soil_mass > kMassCutoff * rho * volume;
-  const bool water_open = !s.water_walls.closed(d, face);
+  const bool soil = P::soil && sums.soil_mass > kMassCutoff * rho * volume;
+  const bool water_open = P::water && !s.water_walls.closed(d, face);
   const bool water = water_open && sums.water_mass > kMassCutoff * rho * volume;
   const bool soil_closed = s.soil_walls.closed(d, face);
-  f.wet =
+  const bool wet =
       water_open && (s.cell[face].wet() || s.cell[face - s.grid.stride[d]].wet() || submerged(s, d, face));
-  if (!soil && !water && !f.wet) {
+  f.wet = wet;
+  if (!soil && !water && !wet) {
     if (soil_closed) s.soil_walls.set_separated(d, face, false);
     return;
   }
 
   // A face at the water surface stands for the wet part of its volume: what half a face of saturated soil
   // holds is dense over that half, and the pressure falls over that half only.
-  const double soaked = soil && water && !f.wet ? soak(s, d, face, f) : 0;
-  const double part = f.wet ? wet_part(s, d, face) : soaked > 0 ? soaked : 1;
+  const double soaked = soil && water && !wet ? soak(s, d, face, f) : 0;
+  const double part = wet ? wet_part(s, d, face) : soaked > 0 ? soaked : 1;
   Balance b;
   f.phi = sums.grains / (part * volume);
   double fixed_phi = 0, fixed_resistivity = 0;
-  if (s.fixed.size()) {
+  if (P::soil && s.fixed.size()) {
     fixed_phi = s.fixed_face[d][face].phi / part;
     fixed_resistivity = s.fixed_face[d][face].resistivity / part;
   }
   f.n = std::max(1 - f.phi - fixed_phi, kMinRoom);
   f.pushed = f.phi;
-  if (f.wet) f.pushed = pushed_part(f.phi, sums.resistivity / (part * volume), fixed_phi, fixed_resistivity);
+  if (wet) f.pushed = pushed_part(f.phi, sums.resistivity / (part * volume), fixed_phi, fixed_resistivity);
   if (soil) {
     f.soil_old = sums.soil_momentum / sums.soil_mass;
     b.soil_mass = inertia * sums.soil_mass / (part * volume);
     b.soil_momentum = b.soil_mass * (f.soil_old + dt * fall) + dt * sums.soil_force / (part * volume);
-    if (f.wet) b.soil_momentum -= dt * (f.phi - f.pushed) * rho * s.constants.gravity[d];
+    if (wet) b.soil_momentum -= dt * (f.phi - f.pushed) * rho * s.constants.gravity[d];
   }
-  if (water || f.wet) {
+  if (water || wet) {
     // Inertia of a wet face is that of a full one, n ρw, not of the few drops whose kernels reach it; where
     // there is no pressure, drops carry and are dragged by what is there.
     const double full = f.n * rho;
-    const double there = f.wet ? 1 : std::min(1.0, sums.water_mass / (part * volume * full));
+    const double there = wet ? 1 : std::min(1.0, sums.water_mass / (part * volume * full));
     f.water_old = water ? sums.water_momentum / sums.water_mass : 0;
     b.water_mass = inertia * there * full;
     f.viscous = water && s.constants.viscosity > 0 ? viscous_acceleration(s, d, face) : 0;
     b.water_momentum = b.water_mass * (f.water_old + dt * (fall + f.viscous / inertia));
     b.drag = dt * there * f.n * f.n * sums.resistivity / (part * volume);
     f.drag = b.drag / dt * part;
-    const double share = f.wet ? sums.water_mass / (part * volume * full) : 1;
+    const double share = wet ? sums.water_mass / (part * volume * full) : 1;
     b.water_drag = b.drag / std::max(share, kLeastWetPart);
     f.fixed_drag = f.n * f.n * fixed_resistivity;
     b.fixed_drag = dt * there * f.fixed_drag;
@@ -269,28 +271,39 @@ bool extrapolate(const State<D>& s, int d, int face, std::uint8_t level, double&
 
 template <int D>
 void predict_velocities(State<D>& s, double dt) {
-  s.blocks.all([&](int b) {
-    s.blocks.cells(s.grid, b, true, [&](int face, const Cell<D>&) {
-      for (int d = 0; d < D; ++d) predict_face(s, d, face, dt);
+  with_phases(s, [&](auto phases) {
+    s.blocks.all([&](int b) {
+      s.blocks.cells(s.grid, b, true, [&](int face, const Cell<D>&) {
+        for (int d = 0; d < D; ++d) predict_face<decltype(phases)>(s, d, face, dt);
+      });
     });
   });
 }
 
 template <int D>
 void correct_velocities(State<D>& s, double dt) {
-  s.blocks.all([&](int b) {
-    s.blocks.cells(s.grid, b, true, [&](int face, const Cell<D>&) {
-      for (int d = 0; d < D; ++d) {
-        FaceFlow& f = s.flow[d][face];
-        const double g = gradient_on_grains(s, d, face);
-        if (f.wet || f.soaked > 0) f.water -= f.water_response * g;
-        f.soil -= f.soil_response * g;
-        f.exchange = dt * f.drag * (f.water - f.soil);
-        if (s.soil_walls.closed(d, face) && f.soil * leaving_direction(s, d, face) <= 0) f.soil = 0;
-      }
+  with_phases(s, [&](auto phases) {
+    using P = decltype(phases);
+    s.blocks.all([&](int b) {
+      s.blocks.cells(s.grid, b, true, [&](int face, const Cell<D>&) {
+        for (int d = 0; d < D; ++d) {
+          FaceFlow& f = s.flow[d][face];
+          if constexpr (P::water) {
+            const double g = gradient_on_grains(s, d, face);
+            if (f.wet || f.soaked > 0) f.water -= f.water_response * g;
+            if constexpr (P::soil) {
+              f.soil -= f.soil_response * g;
+              f.exchange = dt * f.drag * (f.water - f.soil);
+            }
+          }
+          if (P::soil && s.soil_walls.closed(d, face) && f.soil * leaving_direction(s, d, face) <= 0)
+            f.soil = 0;
+        }
+      });
     });
   });
   if (s.constants.kernel == Kernel::linear) follow_leaders(s);
+  if (!s.has_water) return;
   // A kernel reaches 1½ cells: two rings of faces beyond the last wet one.
   for (const std::uint8_t level : {std::uint8_t{2}, std::uint8_t{3}})
     s.blocks.all([&](int b) {

@@ -61,9 +61,9 @@ class WorkloadIn final : public Workload {
 /// Steps before anything is measured: buffers have their sizes, the pressure its history.
 inline constexpr int kWarmUpSteps = 6;
 
-/// Whether dry scenes and those of water alone have instantiations of the step of their own, which `start`
-/// then has to choose. Not so far: State<D> serves all.
-inline constexpr bool kReducedSteps = false;
+/// Whether dry scenes and those of water alone have instantiations of their own of the loops over faces
+/// (engine/step/scheme.hpp); `advance` chooses.
+inline constexpr bool kReducedSteps = true;
 
 /// A scene after its first step.
 inline std::unique_ptr<Workload> start(const Scene& scene) {
