@@ -189,7 +189,7 @@ void ResultFile::begin(const std::vector<SeriesInfo>& series) {
   });
 }
 
-void ResultFile::frame(const Frame& frame) {
+void ResultFile::frame(Frame frame) {
   naming_the_file([&] {
     state_->store(frame_bytes(frame) + frame_bookkeeping_bytes, [&] { state_->put_frame(frame); });
     state_->xdmf->add(frame, "/frames/" + frame_name(frame.index));

@@ -21,7 +21,7 @@ class ResultFile final : public ResultSink {
   ResultFile& operator=(const ResultFile&) = delete;
 
   void begin(const std::vector<SeriesInfo>& series) override;
-  void frame(const Frame& frame) override;
+  void frame(Frame frame) override;
   void sample(double time, const std::vector<double>& values) override;
 
   /// Adds or replaces `/run/<name>` (the final report), e.g. just before `close`.

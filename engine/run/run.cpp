@@ -9,6 +9,7 @@
 #include <map>
 
 #include "engine/plan/step_bounds.hpp"
+#include "engine/run/background_sink.hpp"
 #include "engine/run/diagnosis.hpp"
 #include "engine/run/frame.hpp"
 #include "engine/run/setup.hpp"
@@ -159,6 +160,11 @@ class Run {
     last_frame_time_ = state_.time;
   }
 
+  void finish_output() {
+    const OutputTime timed(*this);
+    sink_.finish();
+  }
+
   void report_progress(const std::string& bound) {
     Progress p;
     p.sim_time = state_.time;
@@ -182,6 +188,7 @@ class Run {
   }
 
   void finish() {
+    finish_output();
     ledger_.measure(state_, last_);
     report_.ledger = ledger_.ledger();
     report_.heave = watch_.heave();
@@ -230,7 +237,7 @@ class Run {
   static constexpr double kCollapse = 1e-5;
 
   const Scene& scene_;
-  ResultSink& sink_;
+  BackgroundSink sink_;
   RunMonitor& monitor_;
   State<D> state_;
   LedgerKeeper<D> ledger_;

@@ -41,11 +41,12 @@ struct SeriesInfo {
 
 /// Receives results as the run goes. Called from one thread, in order of time. Implementations throw
 /// std::runtime_error when they cannot store (the run then ends as failed, code "output").
+/// Called from one thread at a time, which need not be the one that computes.
 class ResultSink {
  public:
   virtual ~ResultSink() = default;
   virtual void begin(const std::vector<SeriesInfo>& series) = 0;
-  virtual void frame(const Frame& frame) = 0;
+  virtual void frame(Frame frame) = 0;
   /// `values` holds every series' components one after the other, in the order of `begin`.
   virtual void sample(double time, const std::vector<double>& values) = 0;
 };

@@ -62,9 +62,9 @@ PressureReport conjugate_gradients(const Grid<D>& grid, PressureSystem<D>& m, Mu
   constexpr int kMaxIterations = 2000;
   const std::size_t rows = m.cell.size();
   PressureReport report{static_cast<int>(rows)};
-  // One longer than the rows: see Multigrid.
-  std::vector<double> x(m.solution), r(rows + 1), z(rows + 1), direction(rows + 1), image(rows + 1);
-  x.push_back(0);
+  auto& [x, r, z, direction, image] = m.work;
+  for (std::vector<double>* v : {&x, &r, &z, &direction, &image}) v->resize(rows + 1), v->back() = 0;
+  std::copy(m.solution.begin(), m.solution.end(), x.begin());
   multigrid.build(grid, m);
   const auto times = [&](const std::vector<double>& in, std::vector<double>& out) {
     multigrid.multiply(in, out);
@@ -85,7 +85,7 @@ PressureReport conjugate_gradients(const Grid<D>& grid, PressureSystem<D>& m, Mu
     const double next = dot(rows, r, z), turn = report.iterations ? next / rz : 0;
     rz = next;
     for_chunks(rows, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) direction[i] = z[i] + turn * direction[i];
+      for (std::size_t i = begin; i < end; ++i) direction[i] = turn == 0 ? z[i] : z[i] + turn * direction[i];
     });
     times(direction, image);
     const double alpha = rz / dot(rows, direction, image);

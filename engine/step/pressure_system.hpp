@@ -20,6 +20,12 @@ struct PressureSystem {
     std::vector<double> weight;  ///< b: ±1, times the radius about an axis
   };
   std::vector<Piston> pistons;
+
+  /// Vectors of the solution, each one longer than the rows; kept, as a system is solved in every step.
+  struct Work {
+    std::vector<double> x, residual, preconditioned, direction, image;
+  };
+  Work work;
 };
 
 }  // namespace quicksand

@@ -20,7 +20,7 @@ namespace {
 
 struct Nowhere : ResultSink {
   void begin(const std::vector<SeriesInfo>&) override {}
-  void frame(const Frame&) override {}
+  void frame(Frame) override {}
   void sample(double, const std::vector<double>&) override {}
 };
 

@@ -13,7 +13,7 @@ namespace quicksand::test {
 class Recorder : public ResultSink {
  public:
   void begin(const std::vector<SeriesInfo>& series) override { info_ = series; }
-  void frame(const Frame& frame) override { frames.push_back(frame); }
+  void frame(Frame frame) override { frames.push_back(frame); }
   void sample(double time, const std::vector<double>& values) override {
     times.push_back(time);
     rows_.push_back(values);

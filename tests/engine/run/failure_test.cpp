@@ -95,7 +95,7 @@ struct FullDisk : test::Recorder {
     if (room-- <= 0) throw std::runtime_error("cannot write Points: No space left on device");
   }
   void begin(const std::vector<SeriesInfo>& s) override { use(), Recorder::begin(s); }
-  void frame(const Frame& f) override { use(), Recorder::frame(f); }
+  void frame(Frame f) override { use(), Recorder::frame(std::move(f)); }
   void sample(double t, const std::vector<double>& v) override { use(), Recorder::sample(t, v); }
 };
 

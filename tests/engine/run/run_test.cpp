@@ -76,7 +76,7 @@ struct Counter : ResultSink {
     ++begun;
     for (const SeriesInfo& s : series) width += s.components;
   }
-  void frame(const Frame& f) override {
+  void frame(Frame f) override {
     EXPECT_EQ(begun, 1u);
     EXPECT_EQ(f.position.size(), 3 * f.points());
     EXPECT_EQ(f.body.size(), f.points());
@@ -222,7 +222,7 @@ TEST(Run, ReportAddsUp) {
 TEST(Run, PhasesTellWhereTheTimeWent) {
   using std::chrono::milliseconds;
   struct Slow : Counter {
-    void frame(const Frame& f) override { std::this_thread::sleep_for(milliseconds(20)), Counter::frame(f); }
+    void frame(Frame f) override { std::this_thread::sleep_for(milliseconds(20)), Counter::frame(f); }
     void sample(double time, const std::vector<double>& values) override {
       std::this_thread::sleep_for(milliseconds(5)), Counter::sample(time, values);
     }
