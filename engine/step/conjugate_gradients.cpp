@@ -62,7 +62,8 @@ PressureReport conjugate_gradients(const Grid<D>& grid, PressureSystem<D>& m, Mu
   constexpr int kMaxIterations = 2000;
   const std::size_t rows = m.cell.size();
   PressureReport report{static_cast<int>(rows)};
-  auto& [x, r, z, direction, image] = m.work;
+  std::vector<double>&x = m.work.x, &r = m.work.residual, &z = m.work.preconditioned;
+  std::vector<double>&direction = m.work.direction, &image = m.work.image;
   for (std::vector<double>* v : {&x, &r, &z, &direction, &image}) v->resize(rows + 1), v->back() = 0;
   std::copy(m.solution.begin(), m.solution.end(), x.begin());
   multigrid.build(grid, m);
