@@ -3,6 +3,8 @@
 
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "engine/scene/scene.hpp"
 
@@ -28,6 +30,13 @@ int check_command(const std::string& case_file, const std::optional<Preset>& pre
 
 /// Prints the schema of case files.
 int schema_command();
+
+struct ServeCommand {
+  std::string config;                                    ///< file of settings; empty: none
+  bool print = false;                                    ///< print the settings instead
+  std::vector<std::pair<std::string, std::string>> set;  ///< settings of the command line, which win
+};
+int serve_command(const ServeCommand& command);
 
 struct SubmitCommand {
   std::string case_file, url, label;

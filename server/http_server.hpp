@@ -12,7 +12,7 @@ namespace quicksand {
 /// Why a request is refused before its body is read or its route looked up: framing that the library would
 /// accept but that hides its true length (Transfer-Encoding 411, Content-Encoding 415, odd Content-Length
 /// 400), too large (413), not JSON where a case is wanted (415). Empty when it may pass.
-std::optional<Problem> screen_request(const httplib::Request& request, const Limits& limits);
+std::optional<Problem> screen_request(const httplib::Request& request, const Settings& settings);
 
 /// The library's server, whose queue of connections not yet accepted is widened: its own holds five, and a
 /// sixth client at the same moment would wait a second for its system to try again.

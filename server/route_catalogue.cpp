@@ -31,22 +31,21 @@ void get_openapi(Service&, const Call&, httplib::Response& response) {
 }
 
 void get_service_info(Service& service, const Call&, httplib::Response& response) {
-  const Limits& limits = service.limits;
+  Json limits = Json::object();
+  for (const Setting& setting : settings_table())
+    if (const auto count = std::get_if<Count Settings::*>(&setting.place))
+      if (std::string_view(setting.name).starts_with("max_"))
+        limits[setting.name] = service.settings.*(*count);
   response.set_content(dump({{"name", "quicksand"},
                              {"version", engine_version},
                              {"case_formats", {"quicksand.case/1"}},
                              {"started", rfc3339(service.started)},
-                             {"workers", service.workers.workers},
-                             {"threads_per_run", service.workers.threads},
+                             {"workers", service.settings.workers},
+                             {"threads_per_run", service.settings.threads_per_run},
                              {"runs",
                               {{"queued", service.store.count(RunState::queued)},
                                {"running", service.store.count(RunState::running)}}},
-                             {"limits",
-                              {{"max_body_bytes", limits.max_body_bytes},
-                               {"max_queued", limits.max_queued},
-                               {"max_page", limits.max_page},
-                               {"max_wait_s", limits.max_wait_s},
-                               {"max_waiters", limits.max_waiters}}}}),
+                             {"limits", limits}}),
                        "application/json");
 }
 

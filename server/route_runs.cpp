@@ -2,9 +2,9 @@
 #include <sys/sysinfo.h>
 
 #include <algorithm>
-#include <charconv>
 
 #include "api/case_json.hpp"
+#include "server/http_parameters.hpp"
 #include "server/http_problem.hpp"
 #include "server/route_handlers.hpp"
 #include "server/run_json.hpp"
@@ -65,19 +65,7 @@ std::string checked_key(const Call& call) {
   return key;
 }
 
-template <typename Number>
-Number checked_number(const Call& call, const char* name, Number least, Number most, Number absent) {
-  if (!call.request.has_param(name)) return absent;
-  const std::string text = call.parameter(name);
-  Number number{};
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (error != std::errc{} || end != text.data() + text.size() || number < least || number > most)
-    fail(400, std::string(name) + ": a whole number from " + std::to_string(least) + " to " +
-                  std::to_string(most));
-  return number;
-}
-
-RunFilter checked_filter(const Call& call, const Limits& limits) {
+RunFilter checked_filter(const Call& call, const Settings& settings) {
   RunFilter filter;
   if (call.request.has_param("status")) {
     filter.state = state_from_name(call.parameter("status"));
@@ -91,7 +79,7 @@ RunFilter checked_filter(const Call& call, const Limits& limits) {
   }
   if (call.request.has_param("page_token"))
     filter.before_sequence = checked_number<long long>(call, "page_token", 1, INT64_MAX, 0);
-  filter.limit = checked_number<int>(call, "limit", 1, limits.max_page, default_page);
+  filter.limit = checked_number<int>(call, "limit", 1, static_cast<int>(settings.max_page), default_page);
   return filter;
 }
 
@@ -110,12 +98,16 @@ void post_run(Service& service, const Call& call, httplib::Response& response) {
   wanted.name = plan_case(call.request.body).scene.name;
   wanted.case_text = call.request.body;
   wanted.engine_version = engine_version;
-  const CreateOutcome outcome = service.store.create(wanted, service.limits.max_queued);
+  const CreateOutcome outcome = service.store.create(wanted, static_cast<int>(service.settings.max_queued));
   switch (outcome.kind) {
     case CreateOutcome::Kind::conflict:
       fail(422, "this Idempotency-Key was used for another case or label");
     case CreateOutcome::Kind::full:
-      throw ProblemError{{503, "too many runs are queued", {}, {}, full_retry_s}};
+      throw ProblemError{{503,
+                          "the queue is full: " + named_limit(service.settings, &Settings::max_queued),
+                          {},
+                          {},
+                          full_retry_s}};
     case CreateOutcome::Kind::created:
       spdlog::info("run={} queued name=\"{}\"", outcome.run->id, outcome.run->name);
       service.runner.wake();
@@ -133,7 +125,7 @@ void post_validate(Service&, const Call& call, httplib::Response& response) {
 }
 
 void get_runs(Service& service, const Call& call, httplib::Response& response) {
-  RunFilter filter = checked_filter(call, service.limits);
+  RunFilter filter = checked_filter(call, service.settings);
   const auto page = static_cast<std::size_t>(filter.limit);
   ++filter.limit;  // one more tells whether there is a next page
   std::vector<StoredRun> runs = service.store.list(filter);

@@ -5,6 +5,7 @@
 #include <sqlite3.h>
 
 #include <algorithm>
+#include <chrono>
 #include <set>
 
 #include "server/http_problem.hpp"
@@ -24,6 +25,9 @@ const std::vector<Route>& route_table() {
       {"POST", "/v1/runs/{id}/cancel", post_cancel, {}},
       {"GET", "/v1/runs/{id}/case", get_run_case, {}},
       {"GET", "/v1/runs/{id}/log", get_run_log, {}},
+      {"GET", "/v1/runs/{id}/events", get_run_events, {}},
+      {"GET", "/v1/runs/{id}/series", get_series, {"name", "format"}},
+      {"GET", "/v1/runs/{id}/frames/{k}", get_frame, {"fields", "stride"}},
       {"GET", "/v1/runs/{id}/results", get_results, {}},
       {"GET", "/v1/runs/{id}/results/{file}", get_result_file, {}},
       {"POST", "/v1/validate", post_validate, {}, true},
@@ -34,6 +38,7 @@ const std::vector<Route>& route_table() {
       {"GET", "/v1/service-info", get_service_info, {}},
       {"GET", "/healthz", get_healthz, {}},
       {"GET", "/readyz", get_readyz, {}},
+      {"GET", "/metrics", get_metrics, {}},
   };
   return table;
 }
@@ -68,12 +73,16 @@ bool same_method(const std::string& route, const std::string& method) {
   return route == method || (route == "GET" && method == "HEAD");
 }
 
-/// An input without effect is an error.
+/// An input without effect is an error, and so is one given twice.
 void refuse_unknown_parameters(const Route& route, const httplib::Request& request) {
   const auto& known = route.parameters;
-  for (const auto& [name, value] : request.params)
+  std::string list;
+  for (const std::string& name : known) list += (list.empty() ? "" : ", ") + name;
+  for (const auto& [name, value] : request.params) {
     if (std::find(known.begin(), known.end(), name) == known.end())
-      fail(400, "unknown query parameter \"" + name + "\"");
+      fail(400, "unknown query parameter \"" + name + "\"; known here: " + (list.empty() ? "none" : list));
+    if (request.get_param_value_count(name) > 1) fail(400, "query parameter \"" + name + "\" is given twice");
+  }
 }
 
 Problem database_problem(const SQLite::Exception& error) {
@@ -82,6 +91,17 @@ Problem database_problem(const SQLite::Exception& error) {
   if (error.getErrorCode() == SQLITE_FULL) problem = {507, "no space left for the run's record", {}, {}, 0};
   if (error.getErrorCode() == SQLITE_BUSY) problem = {503, "the store is busy", {}, {}, 1};
   return problem;
+}
+
+/// Long polls and streams are held on purpose and would hide how fast the rest is.
+void count_answer(Service& service, const httplib::Request& request, const httplib::Response& response,
+                  std::chrono::steady_clock::duration duration) {
+  if (response.has_header("Preference-Applied")) return;
+  const RouteMatch match = find_route(request.method, request.path);
+  const char* route = match.route ? match.route->pattern : "none";
+  const char* method = match.route ? match.route->method : "other";
+  service.metrics.answered(method, route, response.status == -1 ? 200 : response.status,
+                           std::chrono::duration<double>(duration).count());
 }
 
 void call_route(Service& service, const httplib::Request& request, httplib::Response& response) {
@@ -111,6 +131,7 @@ RouteMatch find_route(const std::string& method, const std::string& path) {
 }
 
 void dispatch(Service& service, const httplib::Request& request, httplib::Response& response) {
+  const auto begin = std::chrono::steady_clock::now();
   try {
     call_route(service, request, response);
   } catch (const ProblemError& error) {
@@ -121,6 +142,7 @@ void dispatch(Service& service, const httplib::Request& request, httplib::Respon
     spdlog::error("{} {}: {}", request.method, request.path, error.what());
     answer(response, Problem{});
   }
+  count_answer(service, request, response, std::chrono::steady_clock::now() - begin);
 }
 
 }  // namespace quicksand

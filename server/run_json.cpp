@@ -25,21 +25,25 @@ std::string progress_json(const Progress& progress) {
 
 Json run_json(const StoredRun& run) {
   const std::string self = "/v1/runs/" + run.id;
-  Json json{
-      {"id", run.id},
-      {"status", state_name(run.state)},
-      {"name", run.name},
-      {"label", run.label},
-      {"created", rfc3339(run.created)},
-      {"started", time_or_null(run.started)},
-      {"finished", time_or_null(run.finished)},
-      {"progress", run.progress.empty() ? Json(nullptr) : Json::parse(run.progress)},
-      {"failure", nullptr},
-      {"retries", run.retries},
-      {"engine_version", run.engine_version},
-      {"case_sha256", run.case_sha256},
-      {"links",
-       {{"self", self}, {"case", self + "/case"}, {"log", self + "/log"}, {"results", self + "/results"}}}};
+  Json json{{"id", run.id},
+            {"status", state_name(run.state)},
+            {"name", run.name},
+            {"label", run.label},
+            {"created", rfc3339(run.created)},
+            {"started", time_or_null(run.started)},
+            {"finished", time_or_null(run.finished)},
+            {"progress", run.progress.empty() ? Json(nullptr) : Json::parse(run.progress)},
+            {"failure", nullptr},
+            {"retries", run.retries},
+            {"engine_version", run.engine_version},
+            {"case_sha256", run.case_sha256},
+            {"links",
+             {{"self", self},
+              {"case", self + "/case"},
+              {"log", self + "/log"},
+              {"events", self + "/events"},
+              {"series", self + "/series"},
+              {"results", self + "/results"}}}};
   if (run.failure)
     json["failure"] = {{"code", run.failure->code},
                        {"message", run.failure->message},

@@ -54,8 +54,9 @@ RunState end_state(RunStatus status) {
 
 }  // namespace
 
-Runner::Runner(Store& store, const StateFolder& folder, ChangeBell& bell, const RunnerOptions& options)
-    : store_(store), folder_(folder), bell_(bell), options_(options) {}
+Runner::Runner(Store& store, const StateFolder& folder, ChangeBell& bell, Metrics& metrics,
+               const Settings& settings)
+    : store_(store), folder_(folder), bell_(bell), metrics_(metrics), settings_(settings) {}
 
 Runner::~Runner() {
   begin_stop();
@@ -64,8 +65,8 @@ Runner::~Runner() {
 
 void Runner::start() {
   recover();
-  running_workers_ = options_.workers;
-  for (int i = 0; i < options_.workers; ++i) workers_.emplace_back([this] { work(); });
+  running_workers_ = static_cast<int>(settings_.workers);
+  for (int i = 0; i < running_workers_; ++i) workers_.emplace_back([this] { work(); });
 }
 
 void Runner::recover() {
@@ -161,10 +162,10 @@ void Runner::execute_one(const StoredRun& run, const std::atomic<bool>& cancel) 
   try {
     std::filesystem::create_directories(folder);
     remove_results(folder);
-    StoreMonitor monitor(run, store_, folder_, bell_, cancel, stopping_);
+    StoreMonitor monitor(run, store_, folder_, bell_, metrics_, cancel, stopping_);
     monitor.log("started, engine " + run.engine_version);
     RunOptions options;
-    options.threads = options_.threads;
+    options.threads = static_cast<int>(settings_.threads_per_run);
     const Execution done =
         execute(store_.case_text(run.id).value_or(""), {}, folder.string(), monitor, options);
     monitor.flush();

@@ -12,19 +12,17 @@
 #include <vector>
 
 #include "server/change_bell.hpp"
+#include "server/metrics.hpp"
+#include "server/settings.hpp"
 #include "server/state_folder.hpp"
 #include "server/store.hpp"
 
 namespace quicksand {
 
-struct RunnerOptions {
-  int workers = 1;
-  int threads = 0;  ///< per run; 0: all cores
-};
-
 class Runner {
  public:
-  Runner(Store& store, const StateFolder& folder, ChangeBell& bell, const RunnerOptions& options);
+  Runner(Store& store, const StateFolder& folder, ChangeBell& bell, Metrics& metrics,
+         const Settings& settings);
   ~Runner();  ///< stops and waits for the workers
 
   /// Brings order into what a killed server left, then starts the workers. Call once.
@@ -52,7 +50,8 @@ class Runner {
   Store& store_;
   const StateFolder& folder_;
   ChangeBell& bell_;
-  RunnerOptions options_;
+  Metrics& metrics_;
+  const Settings& settings_;
   std::mutex mutex_;  ///< guards active_, running_workers_ and the order of claim and cancel
   std::condition_variable wake_, stopped_;
   std::map<std::string, std::shared_ptr<Active>> active_;

@@ -46,19 +46,20 @@ sigset_t stop_signals() {
 
 }  // namespace
 
-void serve(const ServeOptions& options) {
-  require_loopback(options.host);
+void serve(const Settings& settings) {
+  require_loopback(settings.host);
   const sigset_t signals = stop_signals();
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);  // inherited by every thread; one of them waits for them
 
-  StateFolder folder(options.state);
+  StateFolder folder(settings.state);
   Store store(folder.database());
   ChangeBell bell;
-  Runner runner(store, folder, bell, options.runner);
-  Service service{store, runner, bell, folder, read_catalogue(options.cases), options.runner, {}};
+  Metrics metrics;
+  Runner runner(store, folder, bell, metrics, settings);
+  Service service{store, runner, bell, folder, metrics, settings, read_catalogue(settings.cases)};
   HttpServer http(service);
-  const int port = http.bind(options.host, options.port);
-  const std::string host = options.host == "::1" ? "[::1]" : options.host;
+  const int port = http.bind(settings.host, static_cast<int>(settings.port));
+  const std::string host = settings.host == "::1" ? "[::1]" : settings.host;
   const std::string url = "http://" + host + ":" + std::to_string(port);
   runner.start();
   folder.announce(url);

@@ -4,6 +4,7 @@
 
 #include <SQLiteCpp/Database.h>
 
+#include <array>
 #include <filesystem>
 #include <mutex>
 #include <optional>
@@ -18,6 +19,8 @@ namespace quicksand {
 enum class RunState { queued, running, canceling, succeeded, failed, canceled };
 const char* state_name(RunState state);
 std::optional<RunState> state_from_name(const std::string& name);
+inline constexpr std::array all_run_states{RunState::queued,    RunState::running, RunState::canceling,
+                                           RunState::succeeded, RunState::failed,  RunState::canceled};
 /// queued, running or canceling: the run's files may still change.
 bool is_active(RunState state);
 

@@ -1,5 +1,6 @@
 """A quicksand server process and plain HTTP towards it, for the tests of the service."""
 
+import contextlib
 import http.client
 import json
 import os
@@ -70,6 +71,18 @@ class ServiceProcess:
 
     def get(self, path, **headers):
         return self.call("GET", path, headers={k.replace("_", "-"): v for k, v in headers.items()})
+
+    @contextlib.contextmanager
+    def open(self, path, headers=None, timeout=60):
+        """The response as a stream; closed at the end of the block, read or not."""
+        connection = http.client.HTTPConnection(self.address.hostname, self.address.port, timeout=timeout)
+        connection.request("GET", path, headers=headers or {})
+        response = connection.getresponse()
+        try:
+            yield response
+        finally:
+            response.close()
+            connection.close()
 
     def raw(self, request, timeout=20):
         """Sends bytes as they are; the whole answer as (status, header text, body), status 0 for none."""

@@ -10,76 +10,15 @@ import os
 import re
 import shutil
 import socket
-import subprocess
-import sys
 import tempfile
 import threading
 import time
-import unittest
 
 import h5py
 import numpy
 
+from server_test import EXECUTABLE, RESULT_NAMES, SMALL_CASE, ServerTest, endless_case, main, quicksand, small_case
 from service_process import ServiceProcess
-
-EXECUTABLE = SMALL_CASE = None  # set at the bottom from the command line
-RESULT_NAMES = ["result.vtkhdf", "result.xdmf", "run.json"]
-
-
-def small_case():
-    with open(SMALL_CASE) as file:
-        return json.load(file)
-
-
-def endless_case():
-    """Computes for as long as a test may need."""
-    case = small_case()
-    case["stages"][0]["duration"] = 1000
-    case["output"]["frame_interval"] = 0.05
-    case["numerics"] = {"time_step": 1e-4}
-    return case
-
-
-def quicksand(*arguments, **options):
-    return subprocess.run([EXECUTABLE, *arguments], capture_output=True, text=True, timeout=120, **options)
-
-
-class ServerTest(unittest.TestCase):
-    """One server for all tests of a class."""
-
-    options = ()
-
-    @classmethod
-    def setUpClass(cls):
-        cls.folder = tempfile.mkdtemp(prefix="quicksand-walk-")
-        cls.state = os.path.join(cls.folder, "state")
-        cls.server = ServiceProcess(EXECUTABLE, cls.state, cls.options).start()
-
-    @classmethod
-    def tearDownClass(cls):
-        if cls.server.process.poll() is None:
-            cls.server.kill()
-        shutil.rmtree(cls.folder)
-
-    def submit(self, case, path="/v1/runs", **headers):
-        answer = self.server.call("POST", path, case, headers)
-        self.assertEqual(answer.status, 201, answer.body)
-        return answer.json()["id"]
-
-    def finished(self, case):
-        run_id = self.submit(case)
-        run = self.server.wait_for(run_id, "succeeded", "failed", "canceled")
-        self.assertEqual(run["status"], "succeeded", run["failure"])
-        return run_id
-
-    def cancel(self, run_id):
-        self.assertEqual(self.server.call("POST", f"/v1/runs/{run_id}/cancel").status, 200)
-        return self.server.wait_for(run_id, "canceled")
-
-    def assert_problem(self, answer, status):
-        self.assertEqual(answer.status, status, answer.body)
-        self.assertEqual(answer.headers["Content-Type"], "application/problem+json")
-        self.assertEqual(answer.json()["status"], status)
 
 
 class WalkTest(ServerTest):
@@ -708,5 +647,4 @@ class CommandLineTest(ServerTest):
 
 
 if __name__ == "__main__":
-    EXECUTABLE, SMALL_CASE = sys.argv[1:3]
-    unittest.main(argv=[sys.argv[0], *sys.argv[3:]], verbosity=2)
+    main()
