@@ -38,6 +38,11 @@ struct ServeCommand {
 };
 int serve_command(const ServeCommand& command);
 
+/// On the records in the folder `state`, whether a server runs there or not.
+int create_key_command(const std::string& state, const std::string& name, const std::string& role);
+int list_keys_command(const std::string& state);
+int revoke_key_command(const std::string& state, const std::string& id);
+
 struct SubmitCommand {
   std::string case_file, url, label;
   std::optional<Preset> preset;

@@ -6,6 +6,7 @@
 #include <charconv>
 #include <stdexcept>
 
+#include "server/cors.hpp"
 #include "server/routes.hpp"
 
 namespace quicksand {
@@ -47,6 +48,15 @@ bool is_json(const std::string& type) {
 /// must not see them. The request is the library's own object, created non-const for this connection.
 void hide_ranges(const httplib::Request& request) { const_cast<httplib::Request&>(request).ranges.clear(); }
 
+/// The service sends data, never a page: nothing in it may run, be framed or be read by other sites.
+void add_security_headers(httplib::Response& response) {
+  response.set_header("X-Content-Type-Options", "nosniff");
+  response.set_header("Content-Security-Policy", "default-src 'none'; frame-ancestors 'none'");
+  response.set_header("Cross-Origin-Resource-Policy", "same-origin");
+  response.set_header("Referrer-Policy", "no-referrer");
+  if (!response.has_header("Cache-Control")) response.set_header("Cache-Control", "private, no-cache");
+}
+
 void log_answer(const httplib::Request& request, const httplib::Response& response) {
   const bool routine = request.method == "GET" && response.status < 400;
   spdlog::log(routine ? spdlog::level::debug : spdlog::level::info, "http method={} path={} status={}",
@@ -59,6 +69,8 @@ std::optional<Problem> screen_request(const httplib::Request& request, const Set
   if (request.has_header("Transfer-Encoding"))
     return refusal(411, "send Content-Length instead of Transfer-Encoding");
   if (request.has_header("Content-Encoding")) return refusal(415, "send the body without Content-Encoding");
+  if (request.version == "HTTP/1.1" && request.get_header_value_count("Host") != 1)
+    return refusal(400, "one Host header is needed");
   const auto length = content_length(request);
   if (!length) return refusal(400, "Content-Length must be one whole number");
   if (*length > static_cast<std::uint64_t>(settings.max_body_bytes))
@@ -72,6 +84,11 @@ std::optional<Problem> screen_request(const httplib::Request& request, const Set
       return refusal(415, "send the case with Content-Type: application/json");
   }
   return {};
+}
+
+std::optional<Problem> HttpServer::screen(const httplib::Request& request) {
+  if (auto refused = screen_request(request, service_.settings)) return refused;
+  return screen_caller(service_, request);
 }
 
 void PatientServer::widen_backlog() { ::listen(svr_sock_, backlog); }
@@ -102,7 +119,7 @@ void HttpServer::install_handlers() {
   using Handled = httplib::Server::HandlerResponse;
   http_.set_pre_routing_handler([this](const httplib::Request& request, httplib::Response& response) {
     hide_ranges(request);
-    if (const auto refused = screen_request(request, service_.settings)) {
+    if (const auto refused = screen(request)) {
       answer(response, *refused);
       return Handled::Handled;
     }
@@ -116,7 +133,7 @@ void HttpServer::install_handlers() {
     dispatch(service_, request, response);
   });
   http_.set_expect_100_continue_handler([this](const httplib::Request& request, httplib::Response& response) {
-    const auto refused = screen_request(request, service_.settings);
+    const auto refused = screen(request);
     if (!refused) return 100;
     answer(response, *refused);
     return refused->status;
@@ -132,9 +149,10 @@ void HttpServer::install_handlers() {
         spdlog::error("http method={} path={} exception", request.method, request.path);
         answer(response, Problem{});
       });
-  http_.set_post_routing_handler([](const httplib::Request&, httplib::Response& response) {
+  http_.set_post_routing_handler([this](const httplib::Request& request, httplib::Response& response) {
     if (response.status == 204) response.headers.erase("Content-Length");
-    response.set_header("X-Content-Type-Options", "nosniff");
+    add_security_headers(response);
+    add_cors_headers(service_.settings, request, response);
   });
   http_.set_logger(log_answer);
 }

@@ -38,6 +38,7 @@ class HttpServer {
  private:
   void install_limits();
   void install_handlers();
+  std::optional<Problem> screen(const httplib::Request& request);
 
   Service& service_;
   PatientServer http_;

@@ -20,10 +20,12 @@ struct CommandLine {
   ServeCommand serve;
   std::optional<Preset> check_preset;
   std::string id, out, url = "http://127.0.0.1:8080";
+  std::string key_state, key_name, key_role = "submit", key_id;
   int status = 0;
 };
 
 void add_url(CLI::App* command, CommandLine& line) {
+  command->footer("A service with API keys wants one in the environment: QUICKSAND_KEY.");
   command->add_option("--url", line.url, "the server")->envname("QUICKSAND_URL")->capture_default_str();
 }
 
@@ -87,6 +89,25 @@ void add_serve_command(CLI::App& app, CommandLine& line) {
   serve->callback([&line] { line.status = serve_command(line.serve); });
 }
 
+void add_key_commands(CLI::App& app, CommandLine& line) {
+  CLI::App* keys = app.add_subcommand("keys", "who may use a service: create, list and revoke API keys");
+  keys->require_subcommand(1);
+  keys->add_option("--state", line.key_state, "folder of the service's records")->required();
+  CLI::App* create = keys->add_subcommand("create", "make a key and print it once");
+  create->add_option("NAME", line.key_name, "whose it is; runs belong to the name")->required();
+  create->add_option("--role", line.key_role, "read: sees all runs; submit: its own runs; admin: everything")
+      ->check(CLI::IsMember({"read", "submit", "admin"}))
+      ->capture_default_str();
+  create->callback(
+      [&line] { line.status = create_key_command(line.key_state, line.key_name, line.key_role); });
+  keys->add_subcommand("list", "all keys, revoked ones too")->callback([&line] {
+    line.status = list_keys_command(line.key_state);
+  });
+  CLI::App* revoke = keys->add_subcommand("revoke", "end a key at once");
+  revoke->add_option("ID", line.key_id, "first column of the list")->required();
+  revoke->callback([&line] { line.status = revoke_key_command(line.key_state, line.key_id); });
+}
+
 void add_remote_commands(CLI::App& app, CommandLine& line) {
   CLI::App* submit = app.add_subcommand("submit", "send a case to a server");
   submit->add_option("CASE", line.submit.case_file, "case file (JSON)")->required();
@@ -126,6 +147,7 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   quicksand::add_local_commands(app, line);
   quicksand::add_serve_command(app, line);
+  quicksand::add_key_commands(app, line);
   quicksand::add_remote_commands(app, line);
   try {
     app.parse(argc, argv);

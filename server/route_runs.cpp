@@ -23,6 +23,11 @@ struct PlannedCase {
   Plan plan;
 };
 
+RunCost cost_of(const Plan& plan) {
+  const std::size_t points = plan.soil_points + plan.fixed_soil_points + plan.water_points;
+  return {static_cast<std::int64_t>(points), plan.memory_bytes, plan.seconds};
+}
+
 /// Memory of this machine in bytes.
 double machine_memory() {
   struct sysinfo facts {};
@@ -79,6 +84,7 @@ RunFilter checked_filter(const Call& call, const Settings& settings) {
   }
   if (call.request.has_param("page_token"))
     filter.before_sequence = checked_number<long long>(call, "page_token", 1, INT64_MAX, 0);
+  if (call.caller.role == Role::submit) filter.owner = call.caller.name;
   filter.limit = checked_number<int>(call, "limit", 1, static_cast<int>(settings.max_page), default_page);
   return filter;
 }
@@ -87,7 +93,7 @@ RunFilter checked_filter(const Call& call, const Settings& settings) {
 
 StoredRun run_of(Service& service, const Call& call) {
   auto run = service.store.find(call.captured.at(0));
-  if (!run) fail(404, "no run " + call.captured.at(0));
+  if (!run || !call.caller.sees(run->owner)) fail(404, "no run " + call.captured.at(0));
   return *run;
 }
 
@@ -95,13 +101,24 @@ void post_run(Service& service, const Call& call, httplib::Response& response) {
   NewRun wanted;
   wanted.label = checked_label(call);
   wanted.idempotency_key = checked_key(call);
-  wanted.name = plan_case(call.request.body).scene.name;
+  const PlannedCase planned = plan_case(call.request.body);
+  wanted.name = planned.scene.name;
+  wanted.cost = cost_of(planned.plan);
+  wanted.owner = call.caller.name;
   wanted.case_text = call.request.body;
   wanted.engine_version = engine_version;
-  const CreateOutcome outcome = service.store.create(wanted, static_cast<int>(service.settings.max_queued));
+  const CreateOutcome outcome =
+      service.store.create(wanted, {service.settings.max_queued, service.settings.max_runs_per_key});
   switch (outcome.kind) {
     case CreateOutcome::Kind::conflict:
       fail(422, "this Idempotency-Key was used for another case or label");
+    case CreateOutcome::Kind::over_quota:
+      throw ProblemError{{429,
+                          wanted.owner + " has as many runs waiting or computing as one key may: " +
+                              named_limit(service.settings, &Settings::max_runs_per_key),
+                          {},
+                          {},
+                          full_retry_s}};
     case CreateOutcome::Kind::full:
       throw ProblemError{{503,
                           "the queue is full: " + named_limit(service.settings, &Settings::max_queued),
@@ -140,14 +157,14 @@ void get_runs(Service& service, const Call& call, httplib::Response& response) {
 }
 
 void post_cancel(Service& service, const Call& call, httplib::Response& response) {
-  const auto run = service.runner.cancel(call.captured.at(0));
+  const auto run = service.runner.cancel(run_of(service, call).id);
   if (!run) fail(404, "no run " + call.captured.at(0));
   spdlog::info("run={} cancel asked for, now {}", run->id, state_name(run->state));
   response.set_content(dump(run_json(*run)), "application/json");
 }
 
 void delete_run(Service& service, const Call& call, httplib::Response& response) {
-  const std::string& id = call.captured.at(0);
+  const std::string id = run_of(service, call).id;
   switch (service.store.remove(id)) {
     case Store::Removal::unknown:
       fail(404, "no run " + id);

@@ -8,6 +8,7 @@
 #include <chrono>
 #include <set>
 
+#include "server/cors.hpp"
 #include "server/http_problem.hpp"
 #include "server/route_handlers.hpp"
 
@@ -15,30 +16,31 @@ namespace quicksand {
 
 const std::vector<Route>& route_table() {
   static const std::vector<Route> table{
-      {"POST", "/v1/runs", post_run, {"label"}, true},
+      {"POST", "/v1/runs", post_run, Access::change, {"label"}, true},
       {"GET",
        "/v1/runs",
        get_runs,
+       Access::known,
        {"status", "label", "name_prefix", "created_after", "limit", "page_token"}},
-      {"GET", "/v1/runs/{id}", get_run, {}},
-      {"DELETE", "/v1/runs/{id}", delete_run, {}},
-      {"POST", "/v1/runs/{id}/cancel", post_cancel, {}},
-      {"GET", "/v1/runs/{id}/case", get_run_case, {}},
-      {"GET", "/v1/runs/{id}/log", get_run_log, {}},
-      {"GET", "/v1/runs/{id}/events", get_run_events, {}},
-      {"GET", "/v1/runs/{id}/series", get_series, {"name", "format"}},
-      {"GET", "/v1/runs/{id}/frames/{k}", get_frame, {"fields", "stride"}},
-      {"GET", "/v1/runs/{id}/results", get_results, {}},
-      {"GET", "/v1/runs/{id}/results/{file}", get_result_file, {}},
-      {"POST", "/v1/validate", post_validate, {}, true},
-      {"GET", "/v1/cases", get_cases, {}},
-      {"GET", "/v1/cases/{name}", get_case, {}},
-      {"GET", "/v1/schemas/case", get_case_schema, {}},
-      {"GET", "/v1/openapi.yaml", get_openapi, {}},
-      {"GET", "/v1/service-info", get_service_info, {}},
-      {"GET", "/healthz", get_healthz, {}},
-      {"GET", "/readyz", get_readyz, {}},
-      {"GET", "/metrics", get_metrics, {}},
+      {"GET", "/v1/runs/{id}", get_run, Access::known, {}},
+      {"DELETE", "/v1/runs/{id}", delete_run, Access::change, {}},
+      {"POST", "/v1/runs/{id}/cancel", post_cancel, Access::change, {}},
+      {"GET", "/v1/runs/{id}/case", get_run_case, Access::known, {}},
+      {"GET", "/v1/runs/{id}/log", get_run_log, Access::known, {}},
+      {"GET", "/v1/runs/{id}/events", get_run_events, Access::known, {}},
+      {"GET", "/v1/runs/{id}/series", get_series, Access::known, {"name", "format"}},
+      {"GET", "/v1/runs/{id}/frames/{k}", get_frame, Access::known, {"fields", "stride"}},
+      {"GET", "/v1/runs/{id}/results", get_results, Access::known, {}},
+      {"GET", "/v1/runs/{id}/results/{file}", get_result_file, Access::known, {}},
+      {"POST", "/v1/validate", post_validate, Access::known, {}, true},
+      {"GET", "/v1/cases", get_cases, Access::known, {}},
+      {"GET", "/v1/cases/{name}", get_case, Access::known, {}},
+      {"GET", "/v1/schemas/case", get_case_schema, Access::known, {}},
+      {"GET", "/v1/openapi.yaml", get_openapi, Access::known, {}},
+      {"GET", "/v1/service-info", get_service_info, Access::known, {}},
+      {"GET", "/healthz", get_healthz, Access::anyone, {}},
+      {"GET", "/readyz", get_readyz, Access::anyone, {}},
+      {"GET", "/metrics", get_metrics, Access::observe, {}},
   };
   return table;
 }
@@ -105,11 +107,13 @@ void count_answer(Service& service, const httplib::Request& request, const httpl
 }
 
 void call_route(Service& service, const httplib::Request& request, httplib::Response& response) {
+  if (answer_preflight(service.settings, request, response)) return;
   RouteMatch match = find_route(request.method, request.path);
   if (!match.route && match.allow.empty()) fail(404, "nothing at " + request.path);
   if (!match.route) throw ProblemError{{405, request.method + " is not possible here", {}, match.allow, 0}};
+  const Caller caller = admit(service.keys, service.settings, request, match.route->access);
   refuse_unknown_parameters(*match.route, request);
-  match.route->handler(service, Call{request, std::move(match.captured)}, response);
+  match.route->handler(service, Call{request, std::move(match.captured), caller}, response);
 }
 
 }  // namespace
@@ -128,6 +132,18 @@ RouteMatch find_route(const std::string& method, const std::string& path) {
   }
   for (const std::string& name : allowed) match.allow += (match.allow.empty() ? "" : ", ") + name;
   return match;
+}
+
+std::optional<Problem> screen_caller(Service& service, const httplib::Request& request) {
+  const RouteMatch match = find_route(request.method, request.path);
+  try {
+    if (match.route) admit(service.keys, service.settings, request, match.route->access);
+  } catch (const ProblemError& error) {
+    return error.problem;
+  } catch (const SQLite::Exception& error) {
+    return database_problem(error);
+  }
+  return {};
 }
 
 void dispatch(Service& service, const httplib::Request& request, httplib::Response& response) {

@@ -29,6 +29,7 @@ Json run_json(const StoredRun& run) {
             {"status", state_name(run.state)},
             {"name", run.name},
             {"label", run.label},
+            {"owner", run.owner.empty() ? Json(nullptr) : Json(run.owner)},
             {"created", rfc3339(run.created)},
             {"started", time_or_null(run.started)},
             {"finished", time_or_null(run.finished)},

@@ -12,6 +12,7 @@
 #include <stdexcept>
 #include <thread>
 
+#include "server/files.hpp"
 #include "server/http_server.hpp"
 #include "server/store.hpp"
 
@@ -23,10 +24,12 @@ namespace {
 constexpr std::chrono::milliseconds worker_patience{6000}, connection_patience{3000};
 
 /// Without keys anybody who reaches the port could run and read everything.
-void require_loopback(const std::string& host) {
-  if (host != "127.0.0.1" && host != "::1" && host != "localhost")
+void require_keys_or_loopback(KeyStore& keys, const std::string& host) {
+  if (!is_loopback(host) && !keys.any())
     throw std::runtime_error(
-        "--host " + host + " refused: without API keys the server listens on this machine only (127.0.0.1)");
+        "host = " + host +
+        " refused: without API keys the server listens on this machine only (127.0.0.1); "
+        "make one with quicksand keys create");
 }
 
 sigset_t stop_signals() {
@@ -47,16 +50,18 @@ sigset_t stop_signals() {
 }  // namespace
 
 void serve(const Settings& settings) {
-  require_loopback(settings.host);
   const sigset_t signals = stop_signals();
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);  // inherited by every thread; one of them waits for them
 
+  make_private();
   StateFolder folder(settings.state);
   Store store(folder.database());
+  KeyStore keys(folder.database());
+  require_keys_or_loopback(keys, settings.host);
   ChangeBell bell;
   Metrics metrics;
   Runner runner(store, folder, bell, metrics, settings);
-  Service service{store, runner, bell, folder, metrics, settings, read_catalogue(settings.cases)};
+  Service service{store, keys, runner, bell, folder, metrics, settings, read_catalogue(settings.cases)};
   HttpServer http(service);
   const int port = http.bind(settings.host, static_cast<int>(settings.port));
   const std::string host = settings.host == "::1" ? "[::1]" : settings.host;

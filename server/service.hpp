@@ -9,8 +9,10 @@
 #include <string>
 #include <vector>
 
+#include "server/access.hpp"
 #include "server/catalogue.hpp"
 #include "server/change_bell.hpp"
+#include "server/keys.hpp"
 #include "server/metrics.hpp"
 #include "server/places.hpp"
 #include "server/runner.hpp"
@@ -22,6 +24,7 @@ namespace quicksand {
 
 struct Service {
   Store& store;
+  KeyStore& keys;
   Runner& runner;
   ChangeBell& bell;
   const StateFolder& folder;
@@ -37,6 +40,7 @@ struct Service {
 struct Call {
   const httplib::Request& request;
   std::vector<std::string> captured;  ///< what stood in place of the route's `{…}`
+  Caller caller;
 
   /// Query parameter; empty when absent.
   std::string parameter(const std::string& name) const { return request.get_param_value(name); }

@@ -23,6 +23,9 @@ struct Settings {
 
   Count max_body_bytes = 4 << 20;
   Count max_queued = 1000;
+  Count max_runs_per_key = 100;
+
+  std::string cors_origin;
 
   Count max_page = 200;
   Count max_wait_s = 30;

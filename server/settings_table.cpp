@@ -27,6 +27,13 @@ const std::vector<Setting>& settings_table() {
        "Largest case that is taken; larger ones get 413."},
       {Kind::count, "max_queued", &Settings::max_queued, 1, many,
        "Runs that may wait; further ones get 503."},
+      {Kind::count, "max_runs_per_key", &Settings::max_runs_per_key, 1, many,
+       "Runs that one API key (without keys: everybody together) may have waiting and computing;\n"
+       "further ones get 429."},
+
+      {Kind::text, "cors_origin", &Settings::cors_origin, 0, 0,
+       "Origin of the one other site whose pages may use the service, such as https://lab.example;\nempty: "
+       "none."},
 
       {Kind::count, "max_page", &Settings::max_page, 1, 1000, "Runs in one answer of the list."},
       {Kind::count, "max_wait_s", &Settings::max_wait_s, 1, 60, "Longest long poll, s."},

@@ -8,7 +8,7 @@ import re
 import jsonschema
 import yaml
 
-from server_test import ServerTest, endless_case, main, small_case
+from server_test import ServerTest, endless_case, main, make_key, small_case
 
 METHODS = ("get", "post", "delete", "head")
 
@@ -25,7 +25,9 @@ def strict(schema):
     return schema
 
 
-class OpenApiTest(ServerTest):
+class DocumentTest(ServerTest):
+    """Holds answers against the document."""
+
     options = ("--workers", "1", "--set", "max_streams=1", "--set", "max_queued=1")
 
     @classmethod
@@ -78,6 +80,10 @@ class OpenApiTest(ServerTest):
             schema = {**content[kind].get("schema", {}), "components": self.document["components"]}
             jsonschema.Draft202012Validator(schema).validate(answer.json())
 
+
+class DocumentedIsServedTest(DocumentTest):
+    """Every operation and every status that the document names."""
+
     def test_everything_documented_is_served_as_documented(self):
         case = small_case()
         run = self.ask("post", "/v1/runs", 201, case, "?label=x", {"Idempotency-Key": "one"}).json()["id"]
@@ -86,6 +92,7 @@ class OpenApiTest(ServerTest):
         self.ask_what_is_wrong(case, run)
         self.ask_too_much(run)
         self.ask_a_server_without_room(run)
+        self.ask_for_another_role(run)
         documented = {(method, path, status) for path, method, operation in self.operations()
                       for status in operation["responses"] if status != "default"}
         # Need a full disk, or a server that is about to stop.
@@ -148,15 +155,38 @@ class OpenApiTest(ServerTest):
             self.server.wait_for(one, "canceled")
         self.ask("delete", "/v1/runs/{id}", 204, id=queued)
 
+    def ask_for_another_role(self, run):
+        """Every operation wants a key but those that say otherwise; 403 stands where a role is too small."""
+        keys = {role: make_key(self.state, role, role) for role in ("read", "submit")}
+        for path, method, operation in self.operations():
+            values = {"id": run, "file": "run.json", "k": 0, "name": "heave"}
+            if operation.get("security") == []:
+                self.ask(method, path, 200, **values)
+                continue
+            body = {} if method == "post" else None
+            self.ask(method, path, 401, body, **values)
+            answers = [self.server.call(method.upper(), re.sub(r"{(\w+)}", lambda n: str(values[n[1]]), path), body,
+                                        {"X-API-Key": key}) for key in keys.values()]
+            self.assertEqual(403 in (answer.status for answer in answers), "403" in operation["responses"], path)
+            if "403" in operation["responses"]:
+                role = list(keys.values())[answers[1].status == 403]
+                self.ask(method, path, 403, body, headers={"X-API-Key": role}, **values)
+
     def ask_a_server_without_room(self, run):
         self.server.stop()
-        self.server.options = ["--set", "max_readers=0"]
+        self.server.options = ["--workers", "1", "--set", "max_readers=0", "--set", "max_runs_per_key=1"]
         self.server.start()
+        running = self.ask("post", "/v1/runs", 201, endless_case()).json()["id"]
+        self.ask("post", "/v1/runs", 429, small_case())
+        self.cancel(running)
         self.ask("get", "/v1/runs/{id}/frames/{k}", 503, id=run, k=0)
         self.ask("get", "/v1/runs/{id}/series", 503, id=run)
 
+
+class ServedIsDocumentedTest(DocumentTest):
+    """Methods and query parameters; that no path is missing is tests/server/routes_test.cpp."""
+
     def test_everything_served_is_documented(self):
-        """Methods and query parameters; that no path is missing is tests/server/routes_test.cpp."""
         for path, item in self.document["paths"].items():
             url = re.sub(r"{\w+}", "x", path)
             allowed = self.server.call("PATCH", url)

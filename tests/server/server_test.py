@@ -32,6 +32,12 @@ def quicksand(*arguments, **options):
     return subprocess.run([EXECUTABLE, *arguments], capture_output=True, text=True, timeout=120, **options)
 
 
+def make_key(state, name, role):
+    made = quicksand("keys", "--state", state, "create", name, "--role", role)
+    assert made.returncode == 0, made.stderr
+    return made.stdout.strip()
+
+
 class ServerTest(unittest.TestCase):
     """One server for all tests of a class."""
 
@@ -39,9 +45,15 @@ class ServerTest(unittest.TestCase):
 
     @classmethod
     def setUpClass(cls):
+        cls.prepare()
+        cls.server.start()
+
+    @classmethod
+    def prepare(cls):
+        """Everything but the start."""
         cls.folder = tempfile.mkdtemp(prefix="quicksand-walk-")
         cls.state = os.path.join(cls.folder, "state")
-        cls.server = ServiceProcess(EXECUTABLE, cls.state, cls.options).start()
+        cls.server = ServiceProcess(EXECUTABLE, cls.state, cls.options)
 
     @classmethod
     def tearDownClass(cls):

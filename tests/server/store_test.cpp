@@ -10,12 +10,12 @@
 namespace quicksand {
 namespace {
 
-constexpr int roomy = 1000;
+constexpr QueueLimits roomy{1000, 1000};
 
 class StoreTest : public testing::Test {
  protected:
   NewRun new_run(const std::string& text, const std::string& key = "", const std::string& label = "") {
-    return {text, "name of " + text, label, "0.1.0", key};
+    return {text, "name of " + text, label, "0.1.0", key, "", 0, {10, 1e6, 5}};
   }
   std::string queue(const std::string& text) { return store_.create(new_run(text), roomy).run->id; }
   RunState state(const std::string& id) { return store_.find(id)->state; }
@@ -126,7 +126,7 @@ TEST_F(StoreTest, KeysAreForgottenAfterADay) {
 
 TEST_F(StoreTest, AFullQueueRefuses) {
   queue("a");
-  EXPECT_EQ(store_.create(new_run("b"), 1).kind, CreateOutcome::Kind::full);
+  EXPECT_EQ(store_.create(new_run("b"), {1, 1000}).kind, CreateOutcome::Kind::full);
   EXPECT_EQ(store_.count(RunState::queued), 1);
 }
 

@@ -260,7 +260,7 @@ class DownloadTest(ServerTest):
 
     def ask(self, *headers, method="GET"):
         lines = "".join(f"{header}\r\n" for header in headers)
-        return self.server.raw(f"{method} {self.result['href']} HTTP/1.1\r\nHost: x\r\n{lines}\r\n".encode())
+        return self.server.raw(f"{method} {self.result['href']} HTTP/1.1\r\nHost: localhost\r\n{lines}\r\n".encode())
 
     def test_whole_and_head(self):
         status, head, body = self.ask()
@@ -324,7 +324,7 @@ class HardeningTest(ServerTest):
         self.assertEqual(self.server.get("/v1/runs").json()["runs"], [])
 
     def post(self, headers, body=b""):
-        return self.server.raw(b"POST /v1/runs HTTP/1.1\r\nHost: x\r\n" + headers + b"\r\n\r\n" + body)
+        return self.server.raw(b"POST /v1/runs HTTP/1.1\r\nHost: localhost\r\n" + headers + b"\r\n\r\n" + body)
 
     def assert_refused(self, answer, *allowed):
         status, head, body = answer
@@ -355,21 +355,38 @@ class HardeningTest(ServerTest):
 
     def test_expect_continue(self):
         with socket.create_connection((self.server.address.hostname, self.server.address.port), timeout=10) as sock:
-            sock.sendall(b"POST /v1/validate HTTP/1.1\r\nHost: x\r\nContent-Type: application/json\r\n"
+            sock.sendall(b"POST /v1/validate HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\n"
                          b"Content-Length: 2\r\nExpect: 100-continue\r\n\r\n")
             self.assertTrue(sock.recv(1000).startswith(b"HTTP/1.1 100 "))
             sock.sendall(b"{}")
             self.assertTrue(sock.recv(10000).startswith(b"HTTP/1.1 422 "))
 
     def test_headers_and_paths(self):
-        self.assert_refused(self.server.raw(b"GET /healthz HTTP/1.1\r\nA: " + b"x" * (1 << 20) + b"\r\n\r\n"), 400, 431)
+        self.assert_refused(self.server.raw(b"GET /healthz HTTP/1.1\r\nHost: localhost\r\nA: " + b"x" * (1 << 20) + b"\r\n\r\n"), 400, 431)
         self.assert_refused(self.server.raw(b"GET /" + b"x" * 9000 + b" HTTP/1.1\r\n\r\n"), 414)
         self.assert_refused(self.server.raw(b"nonsense\r\n\r\n"), 400)
-        self.assert_refused(self.server.raw(b"GET /" + b"x" * 8000 + b" HTTP/1.1\r\n\r\n"), 404)
+        self.assert_refused(self.server.raw(b"GET /" + b"x" * 8000 + b" HTTP/1.1\r\nHost: localhost\r\n\r\n"), 404)
         ranges = b"0-0," * 2000
-        self.assertIn(self.server.raw(b"GET /healthz HTTP/1.1\r\nRange: bytes=" + ranges + b"0-0\r\n\r\n")[0], (200, 416))
-        self.assertIn(self.server.raw(b"GET /healthz HTTP/1.1\r\nRange: bytes=9-1\r\n\r\n")[0], (200, 416))
-        self.assert_refused(self.server.raw(b"POST /" + b"x" * 8000 + b" HTTP/1.1\r\nContent-Length: 1\r\n\r\nx"), 404)
+        self.assertIn(self.server.raw(b"GET /healthz HTTP/1.1\r\nHost: localhost\r\nRange: bytes=" + ranges + b"0-0\r\n\r\n")[0], (200, 416))
+        self.assertIn(self.server.raw(b"GET /healthz HTTP/1.1\r\nHost: localhost\r\nRange: bytes=9-1\r\n\r\n")[0], (200, 416))
+        self.assert_refused(self.server.raw(b"POST /" + b"x" * 8000 + b" HTTP/1.1\r\nHost: localhost\r\nContent-Length: 1\r\n\r\nx"), 404)
+
+    def test_host(self):
+        self.assert_refused(self.server.raw(b"GET /v1/runs HTTP/1.1\r\n\r\n"), 400)
+        self.assert_refused(self.server.raw(b"GET /v1/runs HTTP/1.1\r\nHost: localhost\r\nHost: b\r\n\r\n"), 400)
+        for host in ("127.0.0.1", "localhost:8080", "[::1]:8080"):
+            self.assertEqual(self.server.get("/v1/runs", Host=host).status, 200, host)
+        for host in ("lab.example", "127.0.0.1.lab.example", "localhost.lab.example:80", "[::2]", "["):
+            self.assert_problem(self.server.get("/v1/runs", Host=host), 421)
+
+    def test_security_headers_on_every_answer(self):
+        for path, status in (("/healthz", 200), ("/v1/runs", 200), ("/none", 404), ("/v1/runs?x=1", 400)):
+            headers = self.server.get(path).headers
+            self.assertEqual(headers["X-Content-Type-Options"], "nosniff")
+            self.assertIn("default-src 'none'", headers["Content-Security-Policy"])
+            self.assertEqual(headers["Cross-Origin-Resource-Policy"], "same-origin")
+            self.assertIsNone(headers["Access-Control-Allow-Origin"])
+            self.assertIsNone(headers["Server"])
 
     def test_wrong_method(self):
         for method, path, allow in (("PUT", "/v1/runs", "GET, HEAD, POST"), ("DELETE", "/healthz", "GET, HEAD"),
@@ -381,7 +398,7 @@ class HardeningTest(ServerTest):
 
     def test_a_post_without_body_does_not_wait_for_one(self):
         begin = time.monotonic()
-        status, _, _ = self.server.raw(b"POST /v1/runs/00/cancel HTTP/1.1\r\nHost: x\r\n\r\n")
+        status, _, _ = self.server.raw(b"POST /v1/runs/00/cancel HTTP/1.1\r\nHost: localhost\r\n\r\n")
         self.assertEqual(status, 404)
         self.assertLess(time.monotonic() - begin, 2)
 
@@ -389,7 +406,7 @@ class HardeningTest(ServerTest):
         address = (self.server.address.hostname, self.server.address.port)
         idle = [socket.create_connection(address) for _ in range(20)]
         for sock in idle[:10]:
-            sock.sendall(b"GET /healthz HTTP/1.1\r\nHost: x")
+            sock.sendall(b"GET /healthz HTTP/1.1\r\nHost: localhost")
         self.tearDown()
         for sock in idle:
             sock.close()
