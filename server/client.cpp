@@ -83,9 +83,10 @@ RemoteRun Client::read_run(const httplib::Response& response) const {
   return run;
 }
 
-RemoteRun Client::submit(const std::string& case_text, const std::string& label) {
-  std::string path = "/v1/runs";
-  if (!label.empty()) path = httplib::append_query_params(path, {{"label", label}});
+RemoteRun Client::submit(const std::string& case_text, const std::string& label, int priority) {
+  httplib::Params params{{"priority", std::to_string(priority)}};
+  if (!label.empty()) params.emplace("label", label);
+  const std::string path = httplib::append_query_params("/v1/runs", params);
   return read_run(*checked(http_.Post(path, case_text, "application/json")));
 }
 

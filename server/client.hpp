@@ -34,7 +34,7 @@ class Client {
  public:
   explicit Client(const std::string& url);
 
-  RemoteRun submit(const std::string& case_text, const std::string& label);
+  RemoteRun submit(const std::string& case_text, const std::string& label, int priority);
   RemoteRun find(const std::string& id);
   std::vector<RemoteRun> list();
   RemoteRun cancel(const std::string& id);

@@ -75,7 +75,7 @@ int submit_command(const SubmitCommand& command) {
     text = with_preset(*text, *command.preset);
   }
   return with_server(command.url, [&](Client& client) {
-    RemoteRun run = client.submit(*text, command.label);
+    RemoteRun run = client.submit(*text, command.label, command.priority);
     std::cout << run.id << std::endl;
     if (!command.wait) return exit_status::ok;
     {

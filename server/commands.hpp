@@ -46,6 +46,7 @@ int revoke_key_command(const std::string& state, const std::string& id);
 struct SubmitCommand {
   std::string case_file, url, label;
   std::optional<Preset> preset;
+  int priority = 0;
   bool wait = false;
 };
 int submit_command(const SubmitCommand& command);

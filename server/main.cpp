@@ -114,6 +114,7 @@ void add_remote_commands(CLI::App& app, CommandLine& line) {
   add_url(submit, line);
   add_preset(submit, line.submit.preset);
   submit->add_option("--label", line.submit.label, "a word to find the run by");
+  submit->add_option("--priority", line.submit.priority, "-10 to 10, higher ones first; above 0 for admins");
   submit->add_flag("--wait", line.submit.wait, "show progress until it ends");
   submit->callback([&line] {
     line.submit.url = line.url;

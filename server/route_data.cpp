@@ -160,7 +160,7 @@ std::string series_list(const std::vector<SeriesShape>& all) {
 }  // namespace
 
 void get_frame(Service& service, const Call& call, httplib::Response& response) {
-  const StoredRun run = run_of(service, call);
+  const StoredRun run = run_with_results(service, call);
   const auto stride = checked_number<std::size_t>(call, "stride", 1, 1'000'000, 1);
   const auto index = whole_number<std::size_t>(call.captured.at(1));
   if (!index) fail(404, "no frame " + call.captured.at(1));
@@ -182,7 +182,7 @@ void get_frame(Service& service, const Call& call, httplib::Response& response) 
 }
 
 void get_series(Service& service, const Call& call, httplib::Response& response) {
-  const StoredRun run = run_of(service, call);
+  const StoredRun run = run_with_results(service, call);
   const std::string format = call.request.has_param("format") ? call.parameter("format") : "json";
   if (format != "json" && format != "csv") fail(400, "format: json or csv");
   if (format == "csv" && !call.request.has_param("name")) fail(400, "name: which series, for format=csv");

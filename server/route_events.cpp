@@ -34,8 +34,8 @@ struct Stream {
     const auto run = service.store.find(id);
     if (run && run->revision > seen) {
       seen = run->revision;
-      if (!write(sink,
-                 "id: " + std::to_string(seen) + "\nevent: run\ndata: " + dump(run_json(*run)) + "\n\n"))
+      if (!write(sink, "id: " + std::to_string(seen) +
+                           "\nevent: run\ndata: " + dump(run_json(*run, service.settings)) + "\n\n"))
         return false;
     }
     if (!run || !is_active(run->state) || service.stopping) {

@@ -42,5 +42,7 @@ void get_metrics(Service& service, const Call& call, httplib::Response& response
 
 /// The run of the route's first `{id}`, or 404.
 StoredRun run_of(Service& service, const Call& call);
+/// The same, or 410 when its results were removed by policy.
+StoredRun run_with_results(Service& service, const Call& call);
 
 }  // namespace quicksand

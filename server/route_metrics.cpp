@@ -1,22 +1,7 @@
-#include <unistd.h>
-
-#include <fstream>
-
+#include "server/machine.hpp"
 #include "server/route_handlers.hpp"
 
 namespace quicksand {
-namespace {
-
-/// Memory of this process that lies in RAM, in bytes.
-double resident_bytes() {
-  std::ifstream facts("/proc/self/statm");
-  double pages = 0;
-  facts >> pages >> pages;
-  return pages * static_cast<double>(::sysconf(_SC_PAGESIZE));
-}
-
-}  // namespace
-
 void get_metrics(Service& service, const Call&, httplib::Response& response) {
   Metrics& metrics = service.metrics;
   for (const RunState state : all_run_states)
@@ -27,9 +12,10 @@ void get_metrics(Service& service, const Call&, httplib::Response& response) {
   if (!unknown)
     metrics.set("disk_free_bytes", "Free on the disk of the state folder.",
                 static_cast<double>(space.available));
+  metrics.set("results_bytes", "Results of ended runs.", service.store.results_bytes());
   metrics.set("streams", "Event streams that are open.", static_cast<double>(service.streams.taken()));
   metrics.set("waiters", "Long polls that are held.", static_cast<double>(service.waiters.taken()));
-  metrics.set("resident_bytes", "Memory of the process, its runs included.", resident_bytes());
+  metrics.set("resident_bytes", "Memory of the process, its runs included.", resident_memory());
   metrics.set("start_time_seconds", "When the service started, s since 1970 UTC.",
               static_cast<double>(service.started) / 1000);
   response.set_content(metrics.text(), "text/plain; version=0.0.4; charset=utf-8");

@@ -1,11 +1,11 @@
 #include <spdlog/spdlog.h>
-#include <sys/sysinfo.h>
 
 #include <algorithm>
 
 #include "api/case_json.hpp"
 #include "server/http_parameters.hpp"
 #include "server/http_problem.hpp"
+#include "server/limits.hpp"
 #include "server/route_handlers.hpp"
 #include "server/run_json.hpp"
 #include "server/version.hpp"
@@ -16,6 +16,7 @@ namespace {
 constexpr std::size_t max_label_bytes = 128;
 constexpr std::size_t max_key_bytes = 255;
 constexpr int default_page = 50;
+constexpr int max_priority = 10;
 constexpr int full_retry_s = 60;  ///< s, `Retry-After` of a full queue
 
 struct PlannedCase {
@@ -23,20 +24,8 @@ struct PlannedCase {
   Plan plan;
 };
 
-RunCost cost_of(const Plan& plan) {
-  const std::size_t points = plan.soil_points + plan.fixed_soil_points + plan.water_points;
-  return {static_cast<std::int64_t>(points), plan.memory_bytes, plan.seconds};
-}
-
-/// Memory of this machine in bytes.
-double machine_memory() {
-  struct sysinfo facts {};
-  sysinfo(&facts);
-  return static_cast<double>(facts.totalram) * static_cast<double>(facts.mem_unit);
-}
-
-/// The body as a scene that this machine can run, or 422 with every fault.
-PlannedCase plan_case(const std::string& text) {
+/// The body as a scene that this service may run, or 422 with every fault.
+PlannedCase plan_case(const Settings& settings, const std::string& text) {
   ParsedCase parsed = parse_case(text);
   Problem problem;
   problem.status = 422;
@@ -44,13 +33,26 @@ PlannedCase plan_case(const std::string& text) {
   problem.errors = std::move(parsed.faults);
   if (!parsed.scene) throw ProblemError{problem};
   PlannedCase planned{*parsed.scene, make_plan(*parsed.scene)};
-  if (planned.plan.memory_bytes > machine_memory()) {
-    problem.errors = {
-        {"/domain/cell_size", "the run needs " + std::to_string(planned.plan.memory_bytes / 1e9) +
-                                  " GB of memory, more than this machine has; choose larger cells"}};
-    throw ProblemError{problem};
-  }
+  problem.errors = too_large(settings, cost_of(planned.plan));
+  if (!problem.errors.empty()) throw ProblemError{problem};
   return planned;
+}
+
+void refuse_on_a_full_disk(Service& service) {
+  const std::string shortage = disk_shortage(service.settings, service.folder, service.store.results_bytes());
+  if (!shortage.empty()) fail(507, shortage);
+}
+
+/// Without keys there are no owners to be fair to.
+QueueLimits queue_limits(const Settings& settings, const std::string& owner) {
+  return {settings.max_queued, owner.empty() ? INT64_MAX : settings.max_runs_per_key};
+}
+
+int checked_priority(const Call& call) {
+  const int priority = checked_number<int>(call, "priority", -max_priority, max_priority, 0);
+  if (priority > 0 && call.caller.role != Role::admin)
+    fail(403, "priority above 0 needs a key with the role admin");
+  return priority;
 }
 
 std::string checked_label(const Call& call) {
@@ -97,18 +99,27 @@ StoredRun run_of(Service& service, const Call& call) {
   return *run;
 }
 
+StoredRun run_with_results(Service& service, const Call& call) {
+  StoredRun run = run_of(service, call);
+  if (run.expired)
+    fail(410,
+         "the results were removed at " + rfc3339(*run.expired) + " by the service's policy (keep_days)");
+  return run;
+}
+
 void post_run(Service& service, const Call& call, httplib::Response& response) {
   NewRun wanted;
   wanted.label = checked_label(call);
   wanted.idempotency_key = checked_key(call);
-  const PlannedCase planned = plan_case(call.request.body);
+  wanted.priority = checked_priority(call);
+  refuse_on_a_full_disk(service);
+  const PlannedCase planned = plan_case(service.settings, call.request.body);
   wanted.name = planned.scene.name;
   wanted.cost = cost_of(planned.plan);
   wanted.owner = call.caller.name;
   wanted.case_text = call.request.body;
   wanted.engine_version = engine_version;
-  const CreateOutcome outcome =
-      service.store.create(wanted, {service.settings.max_queued, service.settings.max_runs_per_key});
+  const CreateOutcome outcome = service.store.create(wanted, queue_limits(service.settings, wanted.owner));
   switch (outcome.kind) {
     case CreateOutcome::Kind::conflict:
       fail(422, "this Idempotency-Key was used for another case or label");
@@ -134,11 +145,11 @@ void post_run(Service& service, const Call& call, httplib::Response& response) {
   }
   response.status = 201;
   response.set_header("Location", "/v1/runs/" + outcome.run->id);
-  response.set_content(dump(run_json(*outcome.run)), "application/json");
+  response.set_content(dump(run_json(*outcome.run, service.settings)), "application/json");
 }
 
-void post_validate(Service&, const Call& call, httplib::Response& response) {
-  response.set_content(plan_json(plan_case(call.request.body).plan), "application/json");
+void post_validate(Service& service, const Call& call, httplib::Response& response) {
+  response.set_content(plan_json(plan_case(service.settings, call.request.body).plan), "application/json");
 }
 
 void get_runs(Service& service, const Call& call, httplib::Response& response) {
@@ -152,7 +163,7 @@ void get_runs(Service& service, const Call& call, httplib::Response& response) {
     next = std::to_string(runs.back().sequence);
   }
   Json list = Json::array();
-  for (const StoredRun& run : runs) list.push_back(run_json(run));
+  for (const StoredRun& run : runs) list.push_back(run_json(run, service.settings));
   response.set_content(dump({{"runs", list}, {"next_page_token", next}}), "application/json");
 }
 
@@ -160,7 +171,7 @@ void post_cancel(Service& service, const Call& call, httplib::Response& response
   const auto run = service.runner.cancel(run_of(service, call).id);
   if (!run) fail(404, "no run " + call.captured.at(0));
   spdlog::info("run={} cancel asked for, now {}", run->id, state_name(run->state));
-  response.set_content(dump(run_json(*run)), "application/json");
+  response.set_content(dump(run_json(*run, service.settings)), "application/json");
 }
 
 void delete_run(Service& service, const Call& call, httplib::Response& response) {

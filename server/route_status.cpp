@@ -57,7 +57,7 @@ void get_run(Service& service, const Call& call, httplib::Response& response) {
     response.status = 304;
     return;
   }
-  response.set_content(dump(run_json(run)), "application/json");
+  response.set_content(dump(run_json(run, service.settings)), "application/json");
 }
 
 }  // namespace quicksand

@@ -16,7 +16,7 @@ namespace quicksand {
 
 const std::vector<Route>& route_table() {
   static const std::vector<Route> table{
-      {"POST", "/v1/runs", post_run, Access::change, {"label"}, true},
+      {"POST", "/v1/runs", post_run, Access::change, {"label", "priority"}, true},
       {"GET",
        "/v1/runs",
        get_runs,

@@ -7,6 +7,13 @@ Json time_or_null(const std::optional<Milliseconds>& time) {
   return time ? Json(rfc3339(*time)) : Json(nullptr);
 }
 
+/// When the results will be removed by policy; empty when they will not, or were.
+std::optional<Milliseconds> expires(const StoredRun& run, const Settings& settings) {
+  constexpr Milliseconds day_ms = 24LL * 3600 * 1000;
+  if (settings.keep_days == 0 || run.expired || !run.finished) return {};
+  return *run.finished + settings.keep_days * day_ms;
+}
+
 }  // namespace
 
 std::string dump(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
@@ -23,7 +30,7 @@ std::string progress_json(const Progress& progress) {
                {"eta_s", progress.eta_s}});
 }
 
-Json run_json(const StoredRun& run) {
+Json run_json(const StoredRun& run, const Settings& settings) {
   const std::string self = "/v1/runs/" + run.id;
   Json json{{"id", run.id},
             {"status", state_name(run.state)},
@@ -33,6 +40,10 @@ Json run_json(const StoredRun& run) {
             {"created", rfc3339(run.created)},
             {"started", time_or_null(run.started)},
             {"finished", time_or_null(run.finished)},
+            {"results_expire", time_or_null(expires(run, settings))},
+            {"results_removed", time_or_null(run.expired)},
+            {"priority", run.priority},
+            {"estimated_s", run.cost.seconds},
             {"progress", run.progress.empty() ? Json(nullptr) : Json::parse(run.progress)},
             {"failure", nullptr},
             {"retries", run.retries},

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/run/run.hpp"
+#include "server/settings.hpp"
 #include "server/store.hpp"
 
 namespace quicksand {
@@ -16,7 +17,7 @@ using Json = nlohmann::ordered_json;
 std::string dump(const Json& json);
 
 std::string progress_json(const Progress& progress);
-Json run_json(const StoredRun& run);
+Json run_json(const StoredRun& run, const Settings& settings);
 Json results_json(const std::string& id, const std::vector<StoredResult>& results);
 
 }  // namespace quicksand

@@ -1,5 +1,6 @@
 #pragma once
-// The queue's workers: each takes the oldest queued run, executes it in `<runs>/<id>` and records its end.
+// The queue's workers: each takes the run whose turn it is, executes it in `<runs>/<id>` and records its end.
+// One more thread watches what the runs take and removes old results.
 
 #include <atomic>
 #include <chrono>
@@ -40,12 +41,33 @@ class Runner {
 
  private:
   struct Active {
+    StoredRun run;
+    std::chrono::steady_clock::time_point begin = std::chrono::steady_clock::now();
     std::atomic<bool> cancel{false};
+    std::optional<Failure> limit;  ///< guarded by mutex_; why it is ended, when a limit asks for it
   };
+  struct End {
+    RunState state = RunState::failed;
+    std::optional<Failure> failure;
+    bool again = false;  ///< interrupted by a stop: to be queued again
+  };
+
+  // runner.cpp
+  void work(bool short_runs_only);
+  std::shared_ptr<Active> take_next(bool short_runs_only);
+  ClaimRules claim_rules(bool short_runs_only) const;
+  void execute_one(Active& active);
+  End compute(Active& active);
+  void record(const StoredRun& run, const End& end);
+
+  // runner_guard.cpp
   void recover();
-  void work();
-  bool take_next(StoredRun& run, std::shared_ptr<Active>& active);
-  void execute_one(const StoredRun& run, const std::atomic<bool>& cancel);
+  void plan_what_waits();
+  void guard();
+  void enforce_limits();
+  void expire_results();
+  void end_for(Active& active, const Failure& failure);
+  std::string disk_shortage_now();
 
   Store& store_;
   const StateFolder& folder_;

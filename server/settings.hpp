@@ -18,12 +18,22 @@ struct Settings {
   std::string state, cases;
   std::string log_level = "info";
 
-  Count workers = 1;
+  Count workers = 2;
+  Count short_workers = 1;
+  Count short_run_s = 600;
   Count threads_per_run = 0;
+  Count points_per_thread = 2000;
 
   Count max_body_bytes = 4 << 20;
   Count max_queued = 1000;
   Count max_runs_per_key = 100;
+  Count max_points = 20'000'000;
+  Count max_memory = 0;
+  Count max_run_hours = 168;
+
+  Count disk_reserve = 1LL << 30;
+  Count disk_quota = 0;
+  Count keep_days = 0;
 
   std::string cors_origin;
 

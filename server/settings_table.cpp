@@ -21,15 +21,44 @@ const std::vector<Setting>& settings_table() {
        "What is written on standard error: debug, info, warning or error."},
 
       {Kind::count, "workers", &Settings::workers, 1, 64, "Runs computed at a time."},
-      {Kind::count, "threads_per_run", &Settings::threads_per_run, 0, 1024, "Threads per run; 0: all cores."},
+      {Kind::count, "short_workers", &Settings::short_workers, 0, 64,
+       "So many of the workers take only short runs, so that a draft does not wait for a long one to end.\n"
+       "At least one worker takes any run. Among those that wait, higher priorities go first, then the user\n"
+       "who has waited longest since a run of his began, then the oldest run."},
+      {Kind::count, "short_run_s", &Settings::short_run_s, 1, many,
+       "A run is short when its plan estimates at most so many seconds."},
+      {Kind::count, "threads_per_run", &Settings::threads_per_run, 0, 1024,
+       "Threads per run; 0: by its size, one for every points_per_thread, at most one per core. The result "
+       "is\n"
+       "the same whatever their number."},
+      {Kind::count, "points_per_thread", &Settings::points_per_thread, 1, many,
+       "Points that keep one thread busy; below, more threads cost more than they give."},
 
       {Kind::bytes, "max_body_bytes", &Settings::max_body_bytes, 1024, 64 << 20,
        "Largest case that is taken; larger ones get 413."},
       {Kind::count, "max_queued", &Settings::max_queued, 1, many,
        "Runs that may wait; further ones get 503."},
       {Kind::count, "max_runs_per_key", &Settings::max_runs_per_key, 1, many,
-       "Runs that one API key (without keys: everybody together) may have waiting and computing;\n"
-       "further ones get 429."},
+       "Runs that the owner of an API key may have waiting and computing; further ones get 429."},
+      {Kind::count, "max_points", &Settings::max_points, 1, 1'000'000'000,
+       "Points of one case; larger ones get 422."},
+      {Kind::bytes, "max_memory", &Settings::max_memory, 0, INT64_MAX,
+       "Memory of all runs together; 0: 80 % of the machine's (or of what its control group allows). A case\n"
+       "whose plan needs more gets 422; a run starts when its plan fits beside those that compute; should "
+       "runs\n"
+       "take more than planned, the newest is ended with the code memory_limit."},
+      {Kind::count, "max_run_hours", &Settings::max_run_hours, 0, 8760,
+       "Longest time that a run may compute, h; then it ends with the code time_limit. 0: no bound."},
+
+      {Kind::bytes, "disk_reserve", &Settings::disk_reserve, 0, INT64_MAX,
+       "Stays free on the disk of the state folder. With less, new runs get 507, those that compute end "
+       "with\n"
+       "the code disk_full, those that wait go on waiting until there is room again."},
+      {Kind::bytes, "disk_quota", &Settings::disk_quota, 0, INT64_MAX,
+       "All results together; beyond it the same happens. 0: no bound."},
+      {Kind::count, "keep_days", &Settings::keep_days, 0, 36500,
+       "Results are removed so many days after their run ended; its record and log stay and say so.\n"
+       "0: they are kept until somebody deletes them."},
 
       {Kind::text, "cors_origin", &Settings::cors_origin, 0, 0,
        "Origin of the one other site whose pages may use the service, such as https://lab.example;\nempty: "

@@ -133,8 +133,8 @@ class Store {
   Removal remove(const std::string& id);
   std::vector<StoredResult> results(const std::string& id);
 
-  /// Queued runs from before there were plans in the store.
-  std::vector<StoredRun> unplanned();
+  /// Oldest first.
+  std::vector<StoredRun> queued();
   void set_cost(const std::string& id, const RunCost& cost);
   /// Bytes of the results of all ended runs.
   double results_bytes();

@@ -139,12 +139,9 @@ Recovery Store::recover() {
   return recovery;
 }
 
-std::vector<StoredRun> Store::unplanned() {
+std::vector<StoredRun> Store::queued() {
   const std::lock_guard lock(mutex_);
-  std::vector<StoredRun> runs;
-  for (StoredRun& run : runs_in(state_, RunState::queued))
-    if (run.cost.points == 0) runs.push_back(std::move(run));
-  return runs;
+  return runs_in(state_, RunState::queued);
 }
 
 void Store::set_cost(const std::string& id, const RunCost& cost) {

@@ -3,7 +3,11 @@
 usage: openapi_test.py QUICKSAND SMALL_CASE [unittest options]
 """
 
+import contextlib
+import os
 import re
+import sqlite3
+import time
 
 import jsonschema
 import yaml
@@ -92,11 +96,12 @@ class DocumentedIsServedTest(DocumentTest):
         self.ask_what_is_wrong(case, run)
         self.ask_too_much(run)
         self.ask_a_server_without_room(run)
+        self.ask_on_a_full_disk()
         self.ask_for_another_role(run)
+        self.ask_for_what_is_removed(run)
         documented = {(method, path, status) for path, method, operation in self.operations()
                       for status in operation["responses"] if status != "default"}
-        # Need a full disk, or a server that is about to stop.
-        documented -= {("post", "/v1/runs", "507"), ("get", "/readyz", "503")}
+        documented -= {("get", "/readyz", "503")}  # needs a server that is about to stop
         self.assertEqual(documented - self.seen, set())
 
     def ask_what_goes_well(self, case, run):
@@ -155,6 +160,33 @@ class DocumentedIsServedTest(DocumentTest):
             self.server.wait_for(one, "canceled")
         self.ask("delete", "/v1/runs/{id}", 204, id=queued)
 
+    def ask_on_a_full_disk(self):
+        self.server.stop()
+        self.server.options = ["--workers", "1", "--set", "disk_reserve=8000T", "--set", "max_runs_per_key=1"]
+        self.server.start()
+        answer = self.ask("post", "/v1/runs", 507, small_case())
+        self.assertIn("8000T (disk_reserve)", answer.json()["detail"])
+
+    def ask_for_what_is_removed(self, run):
+        self.server.stop()
+        with contextlib.closing(sqlite3.connect(os.path.join(self.state, "quicksand.db"))) as store, store:
+            store.execute("UPDATE runs SET finished = 0 WHERE id = ?", [run])
+        self.server.options = ["--set", "keep_days=1", "--set", "max_runs_per_key=1"]
+        self.server.start()
+        headers = {"X-API-Key": make_key(self.state, "root", "admin")}
+        deadline = time.monotonic() + 10
+        while not self.ask("get", "/v1/runs/{id}", 200, headers=headers, id=run).json()["results_removed"]:
+            self.assertLess(time.monotonic(), deadline)
+            time.sleep(0.05)
+        for part in ("results", "series"):
+            self.ask("get", "/v1/runs/{id}/" + part, 410, headers=headers, id=run)
+        self.ask("get", "/v1/runs/{id}/frames/{k}", 410, headers=headers, id=run, k=0)
+        for method in ("get", "head"):
+            self.ask(method, "/v1/runs/{id}/results/{file}", 410, headers=headers, id=run, file="run.json")
+        self.assertEqual(os.listdir(os.path.join(self.state, "runs", run)), ["run.log"])
+        self.ask("post", "/v1/runs", 201, endless_case(), headers=headers)
+        self.ask("post", "/v1/runs", 429, small_case(), headers=headers)
+
     def ask_for_another_role(self, run):
         """Every operation wants a key but those that say otherwise; 403 stands where a role is too small."""
         keys = {role: make_key(self.state, role, role) for role in ("read", "submit")}
@@ -174,11 +206,8 @@ class DocumentedIsServedTest(DocumentTest):
 
     def ask_a_server_without_room(self, run):
         self.server.stop()
-        self.server.options = ["--workers", "1", "--set", "max_readers=0", "--set", "max_runs_per_key=1"]
+        self.server.options = ["--set", "max_readers=0"]
         self.server.start()
-        running = self.ask("post", "/v1/runs", 201, endless_case()).json()["id"]
-        self.ask("post", "/v1/runs", 429, small_case())
-        self.cancel(running)
         self.ask("get", "/v1/runs/{id}/frames/{k}", 503, id=run, k=0)
         self.ask("get", "/v1/runs/{id}/series", 503, id=run)
 

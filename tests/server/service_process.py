@@ -28,9 +28,10 @@ class ServiceProcess:
         self.executable, self.state, self.options = executable, state, list(options)
         self.process = None
         self.url = None
+        self.log_folder = os.path.dirname(state)
 
     def start(self):
-        log = open(os.path.join(os.path.dirname(self.state), "server.log"), "a")
+        log = open(os.path.join(self.log_folder, "server.log"), "a")
         self.process = subprocess.Popen(
             [self.executable, "serve", "--port", "auto", "--state", self.state, *self.options],
             stdout=subprocess.PIPE, stderr=log, text=True)

@@ -48,9 +48,10 @@ TEST_F(MigrationTest, NothingIsLostFromVersion1) {
 
 TEST_F(MigrationTest, WhatWaitedIsPlannedAndClaimed) {
   Store store(file_);
-  ASSERT_EQ(store.unplanned().size(), 1u);
+  ASSERT_EQ(store.queued().size(), 1u);
+  EXPECT_EQ(store.queued()[0].cost.points, 0);
   store.set_cost("bb", {10, 2e6, 30});
-  EXPECT_TRUE(store.unplanned().empty());
+  EXPECT_EQ(store.queued()[0].cost.points, 10);
   EXPECT_FALSE(store.claim_next({1e6}));
   EXPECT_EQ(store.claim_next({3e6})->id, "bb");
 }

@@ -163,6 +163,8 @@ class WalkTest(ServerTest):
 class ActiveRunTest(ServerTest):
     """What can be done while a run computes. One worker: what is submitted second waits."""
 
+    options = ("--workers", "1")
+
     def test_cancel_within_a_second(self):
         run_id = self.submit(endless_case())
         self.server.wait_for(run_id, "running")
@@ -432,7 +434,7 @@ class RestartTest(ServerTest):
     def setUp(self):
         self.state = os.path.join(self.folder, self.id().split(".")[-1], "state")
         os.makedirs(self.state)
-        self.server = ServiceProcess(EXECUTABLE, self.state).start()
+        self.server = ServiceProcess(EXECUTABLE, self.state, ["--workers", "1"]).start()
 
     def tearDown(self):
         if self.server.process.poll() is None:
