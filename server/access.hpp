@@ -30,7 +30,7 @@ struct Caller {
 /// browser.
 Caller admit(KeyStore& keys, const Settings& settings, const httplib::Request& request, Access access);
 
-/// An address that only this machine reaches.
+/// An address that only this machine reaches; "unix" stands for a socket in the file system.
 bool is_loopback(const std::string& host);
 
 }  // namespace quicksand

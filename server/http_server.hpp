@@ -20,6 +20,8 @@ class PatientServer : public httplib::Server {
  public:
   /// After binding.
   void widen_backlog();
+  /// Instead of binding: a socket that listens already.
+  void adopt(int descriptor) { svr_sock_ = descriptor; }
 };
 
 /// The HTTP face of a Service: cpp-httplib with everything closed that it leaves open by itself.
@@ -30,6 +32,8 @@ class HttpServer {
   /// Binds to `port`, or with 0 to the first free one from 8080. Returns the port. Throws
   /// std::runtime_error when there is none.
   int bind(const std::string& host, int port);
+  /// Instead of `bind`: serves a socket that listens already.
+  void adopt(int descriptor) { http_.adopt(descriptor); }
   /// Answers until `stop`; returns when every connection has ended.
   void serve();
   /// From any thread.

@@ -14,6 +14,7 @@
 
 #include "server/files.hpp"
 #include "server/http_server.hpp"
+#include "server/inherited_socket.hpp"
 #include "server/store.hpp"
 
 namespace quicksand {
@@ -47,9 +48,21 @@ sigset_t stop_signals() {
   ::_exit(0);
 }
 
+/// The URL of a socket that now listens: the service manager's, or one bound here.
+std::string listen(HttpServer& http, const Settings& settings,
+                   const std::optional<InheritedSocket>& inherited) {
+  if (inherited) http.adopt(inherited->descriptor);
+  const int port = inherited ? inherited->port : http.bind(settings.host, static_cast<int>(settings.port));
+  if (port == 0) return "http+unix://";
+  const bool six = settings.host.find(':') != std::string::npos;
+  return "http://" + (six ? "[" + settings.host + "]" : settings.host) + ":" + std::to_string(port);
+}
+
 }  // namespace
 
-void serve(const Settings& settings) {
+void serve(Settings settings) {
+  const auto inherited = inherited_socket();
+  if (inherited) settings.host = inherited->host;
   const sigset_t signals = stop_signals();
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);  // inherited by every thread; one of them waits for them
 
@@ -63,9 +76,7 @@ void serve(const Settings& settings) {
   Runner runner(store, folder, bell, metrics, settings);
   Service service{store, keys, runner, bell, folder, metrics, settings, read_catalogue(settings.cases)};
   HttpServer http(service);
-  const int port = http.bind(settings.host, static_cast<int>(settings.port));
-  const std::string host = settings.host == "::1" ? "[::1]" : settings.host;
-  const std::string url = "http://" + host + ":" + std::to_string(port);
+  const std::string url = listen(http, settings, inherited);
   runner.start();
   folder.announce(url);
   std::cout << "quicksand serves " << url << " state " << folder.path().string() << std::endl;

@@ -3,8 +3,8 @@
 
 namespace quicksand {
 
-/// Serves until SIGTERM or SIGINT. Prints the URL and the state folder on one line of standard output.
-/// Throws std::runtime_error when it cannot start.
-void serve(const Settings& settings);
+/// Serves a socket of the service manager, or one of its own, until SIGTERM or SIGINT. Prints the URL and the
+/// state folder on one line of standard output. Throws std::runtime_error when it cannot start.
+void serve(Settings settings);
 
 }  // namespace quicksand

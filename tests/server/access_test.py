@@ -5,8 +5,11 @@ usage: access_test.py QUICKSAND SMALL_CASE [unittest options]
 
 import glob
 import os
+import socket
+import subprocess
+import urllib.request
 
-from server_test import ServerTest, endless_case, main, make_key, quicksand, small_case
+from server_test import EXECUTABLE, ServerTest, endless_case, main, make_key, quicksand, small_case
 
 
 class KeysTest(ServerTest):
@@ -121,6 +124,46 @@ class FirstKeyTest(ServerTest):
         refused = quicksand("serve", "--host", "0.0.0.0", "--port", "0", "--state", self.state + "-2")
         self.assertEqual(refused.returncode, 1)
         self.assertIn("keys create", refused.stderr)
+
+
+class InheritedSocketTest(ServerTest):
+    """Listening sockets that a service manager hands over."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.prepare()
+
+    def serve(self, sock):
+        """The server's first line. It gets `sock` as descriptor 3, as sd_listen_fds(3) says."""
+        def hand_over():
+            os.dup2(sock.fileno(), 3)
+        run = f"LISTEN_PID=$$ LISTEN_FDS=1 exec {EXECUTABLE} serve --state {self.state}"
+        process = subprocess.Popen(["sh", "-c", run], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True,
+                                   pass_fds=[3], preexec_fn=hand_over)
+        self.server.process = process
+        return process.stdout.readline()
+
+    def tearDown(self):
+        self.server.kill()
+
+    def test_a_port(self):
+        with socket.create_server(("127.0.0.1", 0)) as sock:
+            port = sock.getsockname()[1]
+            self.assertIn(f"http://127.0.0.1:{port}", self.serve(sock))
+            with urllib.request.urlopen(f"http://127.0.0.1:{port}/healthz") as answer:
+                self.assertEqual(answer.status, 200)
+
+    def test_a_socket_in_the_file_system(self):
+        path = os.path.join(self.folder, "socket")
+        with socket.socket(socket.AF_UNIX) as sock:
+            sock.bind(path)
+            sock.listen()
+            self.assertIn("http+unix://", self.serve(sock))
+            for host, status in ((b"localhost", b"200"), (b"lab.example", b"421")):
+                with socket.socket(socket.AF_UNIX) as client:
+                    client.connect(path)
+                    client.sendall(b"GET /v1/runs HTTP/1.1\r\nHost: " + host + b"\r\n\r\n")
+                    self.assertEqual(client.recv(1000).split()[1], status)
 
 
 class CorsTest(ServerTest):
