@@ -7,24 +7,11 @@ import contextlib
 import http.client
 import json
 import os
-import signal
-import socket
-import ssl
-import subprocess
 import time
 
+from nginx_process import NginxProcess
 from server_test import ServerTest, endless_case, main, make_key, small_case
 from service_process import Answer
-
-SHIPPED = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../deploy/nginx.conf")
-
-
-def free_ports(count):
-    sockets = [socket.create_server(("127.0.0.1", 0)) for _ in range(count)]
-    ports = [sock.getsockname()[1] for sock in sockets]
-    for sock in sockets:
-        sock.close()
-    return ports
 
 
 class NginxTest(ServerTest):
@@ -34,56 +21,18 @@ class NginxTest(ServerTest):
     def setUpClass(cls):
         super().setUpClass()
         cls.key = make_key(cls.state, "anna", "admin")
-        cls.plain, cls.port = free_ports(2)
-        cls.web = os.path.join(cls.folder, "nginx")
-        os.makedirs(cls.web)
-        subprocess.run(["openssl", "req", "-x509", "-newkey", "rsa:2048", "-nodes", "-days", "2", "-subj", "/CN=lab.example",
-                        "-addext", "subjectAltName=DNS:lab.example", "-keyout", cls.web + "/key", "-out", cls.web + "/cert"],
-                       check=True, capture_output=True)
-        cls.configure()
-        cls.nginx = subprocess.Popen(["nginx", "-p", cls.web, "-c", "main.conf", "-e", "error.log"])
-        deadline = time.monotonic() + 10
-        while True:
-            try:
-                socket.create_connection(("127.0.0.1", cls.port)).close()
-                break
-            except ConnectionRefusedError:
-                assert time.monotonic() < deadline and cls.nginx.poll() is None, "nginx does not start"
-                time.sleep(0.05)
-
-    @classmethod
-    def configure(cls):
-        with open(SHIPPED) as file:
-            text = file.read()
-        for shipped, here in (("server 127.0.0.1:8080;", f"server 127.0.0.1:{cls.server.address.port};"),
-                              ("listen 80;", f"listen 127.0.0.1:{cls.plain};"), ("listen [::]:80;", ""),
-                              ("listen 443 ssl http2;", f"listen 127.0.0.1:{cls.port} ssl http2;"),
-                              ("listen [::]:443 ssl http2;", ""),
-                              ("/etc/ssl/certs/lab.example.pem", cls.web + "/cert"),
-                              ("/etc/ssl/private/lab.example.key", cls.web + "/key")):
-            assert text.count(shipped) == 1, shipped
-            text = text.replace(shipped, here)
-        with open(cls.web + "/site.conf", "w") as file:
-            file.write(text)
-        temporary = "".join(f"{kind}_temp_path {cls.web}/{kind};" for kind in
-                            ("client_body", "proxy", "fastcgi", "uwsgi", "scgi"))
-        with open(cls.web + "/main.conf", "w") as file:
-            file.write(f"daemon off; worker_processes 1; pid {cls.web}/pid; events {{}} "
-                       f"http {{ access_log off; {temporary} include site.conf; }}")
+        cls.nginx = NginxProcess(os.path.join(cls.folder, "nginx"), cls.server.address.port).start()
 
     @classmethod
     def tearDownClass(cls):
-        cls.nginx.send_signal(signal.SIGTERM)
-        cls.nginx.wait(timeout=10)
+        cls.nginx.stop()
         super().tearDownClass()
 
     @contextlib.contextmanager
     def connection(self):
         """To lab.example, its certificate checked, by TLS to nginx."""
-        context = ssl.create_default_context(cafile=self.web + "/cert")
-        connection = http.client.HTTPSConnection("lab.example", self.port, timeout=30, context=context)
-        connection.sock = context.wrap_socket(socket.create_connection(("127.0.0.1", self.port), timeout=30),
-                                              server_hostname="lab.example")
+        connection = http.client.HTTPSConnection("lab.example", self.nginx.port, timeout=30)
+        connection.sock = self.nginx.connect()
         try:
             yield connection
         finally:
@@ -109,7 +58,7 @@ class NginxTest(ServerTest):
         return run_id
 
     def test_tls_only(self):
-        connection = http.client.HTTPConnection("127.0.0.1", self.plain)
+        connection = http.client.HTTPConnection("127.0.0.1", self.nginx.plain)
         connection.request("GET", "/v1/runs?limit=1", headers={"Host": "lab.example"})
         response = connection.getresponse()
         self.assertEqual((response.status, response.headers["Location"]), (308, "https://lab.example/v1/runs?limit=1"))
@@ -176,10 +125,9 @@ class NginxTest(ServerTest):
         self.assert_problem(self.call("GET", "/v1/runs", X_API_Key="none"), 401)
 
     def test_slow_clients_do_not_reach_the_service(self):
-        context = ssl.create_default_context(cafile=self.web + "/cert")
         slow = []
         for k in range(40):
-            sock = context.wrap_socket(socket.create_connection(("127.0.0.1", self.port)), server_hostname="lab.example")
+            sock = self.nginx.connect()
             sock.sendall(b"POST /v1/runs HTTP/1.1\r\nHost: lab.example\r\nContent-Type: application/json\r\n"
                          + (b"Content-Length: 1000\r\n\r\n{" if k % 2 else b""))
             slow.append(sock)

@@ -321,7 +321,10 @@ TEST(ClockTest, WritesAndReadsRfc3339) {
   EXPECT_EQ(rfc3339(1'700'000'000'042), "2023-11-14T22:13:20.042Z");
   EXPECT_EQ(parse_rfc3339("2023-11-14T22:13:20.042Z"), 1'700'000'000'042);
   EXPECT_EQ(parse_rfc3339("2023-11-14T22:13:20Z"), 1'700'000'000'000);
-  for (const char* wrong : {"", "2023-11-14", "2023-11-14T22:13:20", "2023-11-14T22:13:20Zx", "yesterday"})
+  for (const std::string& wrong :
+       {std::string(), std::string("2023-11-14"), std::string("2023-11-14T22:13:20"),
+        std::string("2023-11-14T22:13:20Zx"), std::string("2023-11-14T22:13:20Z\0", 21),
+        std::string("1969-12-31T23:59:59Z"), std::string("yesterday")})
     EXPECT_FALSE(parse_rfc3339(wrong)) << wrong;
 }
 
