@@ -1,6 +1,7 @@
 #pragma once
 // Query parameters as values; what is malformed is refused with 400.
 
+#include <algorithm>
 #include <charconv>
 #include <optional>
 #include <string>

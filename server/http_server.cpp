@@ -8,6 +8,7 @@
 
 #include "server/cors.hpp"
 #include "server/routes.hpp"
+#include "server/run_json.hpp"
 
 namespace quicksand {
 namespace {
@@ -60,7 +61,7 @@ void add_security_headers(httplib::Response& response) {
 void log_answer(const httplib::Request& request, const httplib::Response& response) {
   const bool routine = request.method == "GET" && response.status < 400;
   spdlog::log(routine ? spdlog::level::debug : spdlog::level::info, "http method={} path={} status={}",
-              request.method, request.path, response.status);
+              quoted(request.method), quoted(request.path), response.status);
 }
 
 }  // namespace
@@ -146,7 +147,7 @@ void HttpServer::install_handlers() {
   }));
   http_.set_exception_handler(
       [](const httplib::Request& request, httplib::Response& response, std::exception_ptr) {
-        spdlog::error("http method={} path={} exception", request.method, request.path);
+        spdlog::error("http method={} path={} exception", quoted(request.method), quoted(request.path));
         answer(response, Problem{});
       });
   http_.set_post_routing_handler([this](const httplib::Request& request, httplib::Response& response) {

@@ -73,13 +73,13 @@ double folder_bytes(const std::filesystem::path& folder) {
 }
 
 std::optional<Failure> out_of_time(const Settings& settings, std::chrono::steady_clock::duration wall) {
-  const std::chrono::hours most(settings.max_run_hours);
-  if (settings.max_run_hours == 0 || wall < most) return {};
+  const std::chrono::seconds most(settings.max_run_s);
+  if (settings.max_run_s == 0 || wall < most) return {};
   return Failure{
       "time_limit",
-      fmt::format("the run computed for longer than {} h; its frames until then are kept. Choose larger "
+      fmt::format("the run computed for longer than {} s; its frames until then are kept. Choose larger "
                   "cells or a shorter duration",
-                  named_limit(settings, &Settings::max_run_hours)),
+                  named_limit(settings, &Settings::max_run_s)),
       0,
       {}};
 }

@@ -137,7 +137,8 @@ void post_run(Service& service, const Call& call, httplib::Response& response) {
                           {},
                           full_retry_s}};
     case CreateOutcome::Kind::created:
-      spdlog::info("run={} queued name=\"{}\"", outcome.run->id, outcome.run->name);
+      spdlog::info("run={} queued owner={} name={}", outcome.run->id, quoted(outcome.run->owner),
+                   quoted(outcome.run->name));
       service.runner.wake();
       break;
     case CreateOutcome::Kind::repeated:

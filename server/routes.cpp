@@ -11,6 +11,7 @@
 #include "server/cors.hpp"
 #include "server/http_problem.hpp"
 #include "server/route_handlers.hpp"
+#include "server/run_json.hpp"
 
 namespace quicksand {
 
@@ -155,7 +156,8 @@ void dispatch(Service& service, const httplib::Request& request, httplib::Respon
   } catch (const SQLite::Exception& error) {
     answer(response, database_problem(error));
   } catch (const std::exception& error) {  // its text stays on our side
-    spdlog::error("{} {}: {}", request.method, request.path, error.what());
+    spdlog::error("http method={} path={} error={}", quoted(request.method), quoted(request.path),
+                  quoted(error.what()));
     answer(response, Problem{});
   }
   count_answer(service, request, response, std::chrono::steady_clock::now() - begin);

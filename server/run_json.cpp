@@ -18,6 +18,10 @@ std::optional<Milliseconds> expires(const StoredRun& run, const Settings& settin
 
 std::string dump(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
+std::string quoted(const std::string& text) {
+  return Json(text).dump(-1, ' ', true, Json::error_handler_t::replace);
+}
+
 std::string progress_json(const Progress& progress) {
   return dump({{"fraction", progress.fraction},
                {"stage", progress.stage},

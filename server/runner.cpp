@@ -10,6 +10,7 @@
 #include "server/execute.hpp"
 #include "server/limits.hpp"
 #include "server/run_files.hpp"
+#include "server/run_json.hpp"
 #include "server/run_monitor.hpp"
 
 namespace quicksand {
@@ -144,7 +145,7 @@ void Runner::work(bool short_runs_only) {
 
 void Runner::execute_one(Active& active) {
   const StoredRun& run = active.run;
-  spdlog::info("run={} started name=\"{}\"", run.id, run.name);
+  spdlog::info("run={} started name={}", run.id, quoted(run.name));
   End end;
   try {
     end = compute(active);

@@ -29,7 +29,7 @@ struct Settings {
   Count max_runs_per_key = 100;
   Count max_points = 20'000'000;
   Count max_memory = 0;
-  Count max_run_hours = 168;
+  Count max_run_s = 7 * 24 * 3600;
 
   Count disk_reserve = 1LL << 30;
   Count disk_quota = 0;

@@ -47,8 +47,8 @@ const std::vector<Setting>& settings_table() {
        "whose plan needs more gets 422; a run starts when its plan fits beside those that compute; should "
        "runs\n"
        "take more than planned, the newest is ended with the code memory_limit."},
-      {Kind::count, "max_run_hours", &Settings::max_run_hours, 0, 8760,
-       "Longest time that a run may compute, h; then it ends with the code time_limit. 0: no bound."},
+      {Kind::count, "max_run_s", &Settings::max_run_s, 0, 366 * 24 * 3600,
+       "Longest time that a run may compute, s; then it ends with the code time_limit. 0: no bound."},
 
       {Kind::bytes, "disk_reserve", &Settings::disk_reserve, 0, INT64_MAX,
        "Stays free on the disk of the state folder. With less, new runs get 507, those that compute end "

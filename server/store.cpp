@@ -73,7 +73,8 @@ Store::Store(const std::filesystem::path& file, Clock clock)
 
 CreateOutcome Store::create(const NewRun& run, const QueueLimits& limits) {
   const std::string case_sha256 = sha256_text(run.case_text);
-  const std::string request_sha256 = sha256_text(case_sha256 + run.label + std::to_string(run.priority));
+  const std::string request_sha256 =
+      sha256_text(case_sha256 + run.label + (run.priority != 0 ? std::to_string(run.priority) : ""));
   const std::lock_guard lock(mutex_);
   const int64_t now = clock_();
   SQLite::Transaction transaction(state_, SQLite::TransactionBehavior::IMMEDIATE);

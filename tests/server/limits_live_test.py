@@ -68,6 +68,19 @@ class FairnessTest(ServerTest):
         self.assertIn("threads 1\n", self.server.get(f"/v1/runs/{run_id}/log").body.decode())
 
 
+class TimeLimitTest(ServerTest):
+    options = ("--set", "max_run_s=1",)
+
+    def test_a_run_ends_and_keeps_its_frames(self):
+        run_id = self.submit(endless_case())
+        run = self.server.wait_for(run_id, "failed", seconds=20)
+        self.assertEqual(run["failure"]["code"], "time_limit")
+        self.assertIn("1 (max_run_s)", run["failure"]["message"])
+        self.assertGreater(run["failure"]["at"]["time"], 0)
+        results = self.server.get(f"/v1/runs/{run_id}/results").json()["results"]
+        self.assertEqual([result["name"] for result in results], ["result.vtkhdf", "result.xdmf", "run.json"])
+
+
 class PriorityNeedsAnAdminTest(ServerTest):
     def test_above_zero(self):
         key = {"X-API-Key": make_key(self.state, "anna", "submit")}

@@ -58,6 +58,11 @@ class DocumentTest(ServerTest):
         both = self.document["paths"][path].get("parameters", []) + operation.get("parameters", [])
         return [p for p in map(self.resolved, both) if p["in"] == place]
 
+    def ask_head(self, url, headers):
+        """Every GET can be asked as HEAD: the same status, no body."""
+        head = self.server.call("HEAD", url, headers=headers)
+        self.assertEqual((head.status, head.body), (200, b""), url)
+
     def ask(self, method, path, status, body=None, query="", headers=None, **values):
         """Asks for a path of the document and holds the answer against it."""
         url = re.sub(r"{(\w+)}", lambda name: str(values[name[1]]), path) + query
@@ -68,6 +73,8 @@ class DocumentTest(ServerTest):
         self.assertIn(str(status), responses, where)
         self.compare(self.resolved(responses[str(status)]), answer, where, method == "head")
         self.seen.add((method, path, str(status)))
+        if (method, status) == ("get", 200):
+            self.ask_head(url, headers or {})
         return answer
 
     def compare(self, response, answer, where, head):

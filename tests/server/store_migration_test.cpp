@@ -5,6 +5,7 @@
 
 #include "server/files.hpp"
 #include "server/keys.hpp"
+#include "server/sha256.hpp"
 #include "server/store.hpp"
 #include "tests/server/temporary_folder.hpp"
 
@@ -42,6 +43,11 @@ TEST_F(MigrationTest, NothingIsLostFromVersion1) {
   EXPECT_FALSE(done->expired);
   ASSERT_EQ(store.results("aa").size(), 1u);
   EXPECT_EQ(store.results("aa")[0].bytes, 7u);
+  const std::string same = sha256_text(sha256_text("{}"));  // as version 1 kept the body of a key
+  SQLite::Database(file_.string(), SQLite::OPEN_READWRITE)
+      .exec("UPDATE idempotency_keys SET created = 4000, request_sha256 = '" + same + "'");
+  EXPECT_EQ(store.create({"{}", "two", "", "0.1.0", "night", "", 0, {}}, {10, 10}).kind,
+            CreateOutcome::Kind::repeated);
   NewRun again{"other", "two", "", "0.1.0", "night", "", 0, {}};
   EXPECT_EQ(store.create(again, {10, 10}).kind, CreateOutcome::Kind::conflict);
 }

@@ -381,6 +381,13 @@ class HardeningTest(ServerTest):
         for host in ("lab.example", "127.0.0.1.lab.example", "localhost.lab.example:80", "[::2]", "["):
             self.assert_problem(self.server.get("/v1/runs", Host=host), 421)
 
+    def test_a_path_cannot_write_a_line_of_the_log(self):
+        self.assert_problem(self.server.get("/a%0A2026-01-01T00:00:00.000Z%20info%20run=forged"), 404)
+        with open(os.path.join(self.folder, "server.log")) as file:
+            log = file.read()
+        self.assertIn("run=forged", log)
+        self.assertFalse([line for line in log.splitlines() if line.startswith("2026-01-01T00:00:00")])
+
     def test_security_headers_on_every_answer(self):
         for path, status in (("/healthz", 200), ("/v1/runs", 200), ("/none", 404), ("/v1/runs?x=1", 400)):
             headers = self.server.get(path).headers
