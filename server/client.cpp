@@ -105,6 +105,10 @@ RemoteRun Client::cancel(const std::string& id) {
   return read_run(*checked(http_.Post("/v1/runs/" + id + "/cancel", "", "application/json")));
 }
 
+void Client::remove(const std::string& id) { checked(http_.Delete("/v1/runs/" + id)); }
+
+std::string Client::log(const std::string& id) { return checked(http_.Get("/v1/runs/" + id + "/log"))->body; }
+
 RemoteRun Client::wait(const std::string& id, const std::function<void(const RemoteRun&)>& show) {
   RemoteRun run = find(id);
   show(run);

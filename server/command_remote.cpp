@@ -117,6 +117,20 @@ int fetch_command(const std::string& url, const std::string& id, const std::stri
   });
 }
 
+int log_command(const std::string& url, const std::string& id) {
+  return with_server(url, [&](Client& client) {
+    std::cout << client.log(id);
+    return exit_status::ok;
+  });
+}
+
+int delete_command(const std::string& url, const std::string& id) {
+  return with_server(url, [&](Client& client) {
+    client.remove(id);
+    return exit_status::ok;
+  });
+}
+
 int cancel_command(const std::string& url, const std::string& id) {
   return with_server(url, [&](Client& client) {
     print_run(client.cancel(id));

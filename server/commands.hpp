@@ -55,6 +55,8 @@ int submit_command(const SubmitCommand& command);
 int status_command(const std::string& url, const std::string& id);
 int fetch_command(const std::string& url, const std::string& id, const std::string& out);
 int cancel_command(const std::string& url, const std::string& id);
+int log_command(const std::string& url, const std::string& id);
+int delete_command(const std::string& url, const std::string& id);
 
 /// "draft", "standard", "fine".
 const char* preset_name(Preset preset);

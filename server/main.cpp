@@ -108,6 +108,15 @@ void add_key_commands(CLI::App& app, CommandLine& line) {
   revoke->callback([&line] { line.status = revoke_key_command(line.key_state, line.key_id); });
 }
 
+/// A command about one run that needs nothing but its id.
+void add_run_command(CLI::App& app, CommandLine& line, const char* name, const char* help,
+                     int (*command)(const std::string& url, const std::string& id)) {
+  CLI::App* sub = app.add_subcommand(name, help);
+  sub->add_option("ID", line.id, "run")->required();
+  add_url(sub, line);
+  sub->callback([&line, command] { line.status = command(line.url, line.id); });
+}
+
 void add_remote_commands(CLI::App& app, CommandLine& line) {
   CLI::App* submit = app.add_subcommand("submit", "send a case to a server");
   submit->add_option("CASE", line.submit.case_file, "case file (JSON)")->required();
@@ -132,10 +141,9 @@ void add_remote_commands(CLI::App& app, CommandLine& line) {
   add_url(fetch, line);
   fetch->callback([&line] { line.status = fetch_command(line.url, line.id, line.out); });
 
-  CLI::App* cancel = app.add_subcommand("cancel", "end a run");
-  cancel->add_option("ID", line.id, "run")->required();
-  add_url(cancel, line);
-  cancel->callback([&line] { line.status = cancel_command(line.url, line.id); });
+  add_run_command(app, line, "cancel", "end a run", cancel_command);
+  add_run_command(app, line, "log", "what happened in a run", log_command);
+  add_run_command(app, line, "delete", "delete a run that has ended, with its files", delete_command);
 }
 
 }  // namespace

@@ -653,8 +653,14 @@ class CommandLineTest(ServerTest):
         self.assertIn("running", self.client("status", run_id).stdout)
         self.assertIn(run_id, self.client("status").stdout)
         self.assertEqual(self.client("fetch", run_id, "--out", self.folder).returncode, 1)
+        self.assertEqual(self.client("delete", run_id).returncode, 1)  # it has not ended
         self.assertEqual(self.client("cancel", run_id).returncode, 0)
         self.server.wait_for(run_id, "canceled")
+        log = self.client("log", run_id)
+        self.assertEqual(log.returncode, 0)
+        self.assertIn("ended: canceled", log.stdout)
+        self.assertEqual(self.client("delete", run_id).returncode, 0)
+        self.assertEqual(self.client("log", run_id).returncode, 1)
 
     def test_submit_tells_what_is_wrong(self):
         bad = self.client("submit", self.bad_case())
