@@ -29,7 +29,7 @@ int with_keys(const std::string& state, bool make, Work work) {
     KeyStore keys(database);
     return work(keys);
   } catch (const std::exception& error) {
-    std::cerr << error.what() << '\n';
+    std::cerr << "the records in " << state << ": " << error.what() << '\n';
     return exit_status::failed;
   }
 }

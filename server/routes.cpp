@@ -88,12 +88,22 @@ void refuse_unknown_parameters(const Route& route, const httplib::Request& reque
   }
 }
 
+/// What the store refuses, without its words: they may hold paths.
 Problem database_problem(const SQLite::Exception& error) {
-  Problem problem;
+  constexpr int broken_retry_s = 10;
   spdlog::error("store: {}", error.what());
-  if (error.getErrorCode() == SQLITE_FULL) problem = {507, "no space left for the run's record", {}, {}, 0};
-  if (error.getErrorCode() == SQLITE_BUSY) problem = {503, "the store is busy", {}, {}, 1};
-  return problem;
+  switch (error.getErrorCode()) {
+    case SQLITE_FULL:
+      return {507, "no space left for the run's record", {}, {}, 0};
+    case SQLITE_BUSY:
+      return {503, "the store is busy", {}, {}, 1};
+    case SQLITE_READONLY:
+    case SQLITE_IOERR:
+    case SQLITE_CANTOPEN:
+      return {503, "the store cannot be used", {}, {}, broken_retry_s};
+    default:
+      return {};
+  }
 }
 
 /// Long polls and streams are held on purpose and would hide how fast the rest is.
