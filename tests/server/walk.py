@@ -10,6 +10,7 @@ import os
 import re
 import shutil
 import socket
+import subprocess
 import tempfile
 import threading
 import time
@@ -282,6 +283,17 @@ class DownloadTest(ServerTest):
             self.assertIn(f"Content-Range: bytes {first}-{last}/{size}", head)
             self.assertIn(f"Content-Length: {last - first + 1}", head)
 
+    def test_curl_continues_what_broke_off(self):
+        path = os.path.join(self.folder, "curled.vtkhdf")
+        for have in (0, 1000, len(self.body) - 1):
+            with open(path, "wb") as file:
+                file.write(self.body[:have])
+            curl = subprocess.run(["curl", "-fsS", "-C", "-", "-o", path, self.server.url + self.result["href"]],
+                                  capture_output=True, text=True)
+            self.assertEqual(curl.returncode, 0, curl.stderr)
+            with open(path, "rb") as file:
+                self.assertEqual(file.read(), self.body)
+
     def test_several_ranges_give_the_whole(self):
         status, _, body = self.ask("Range: bytes=0-1,5-6")
         self.assertEqual((status, body), (200, self.body))
@@ -509,8 +521,9 @@ class RestartTest(ServerTest):
         self.server.wait_for(run_id, "running")
         poll = threading.Thread(target=self.server.get, args=[f"/v1/runs/{run_id}"], kwargs={"Prefer": "wait=30"})
         poll.start()
-        time.sleep(0.3)
-        self.assertLess(self.server.stop(), 10)
+        with self.server.open(f"/v1/runs/{run_id}/events"):
+            time.sleep(0.3)
+            self.assertLess(self.server.stop(), 10)
         poll.join()
         self.assertFalse(os.path.exists(os.path.join(self.state, "server.json")))
         self.server.start()
