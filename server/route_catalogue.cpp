@@ -3,6 +3,7 @@
 #include "api/case_json.hpp"
 #include "api/openapi.hpp"
 #include "server/http_problem.hpp"
+#include "server/limits.hpp"
 #include "server/route_handlers.hpp"
 #include "server/run_json.hpp"
 #include "server/version.hpp"
@@ -61,6 +62,8 @@ void get_readyz(Service& service, const Call&, httplib::Response& response) {
     spdlog::error("not ready: {}", error.what());
     fail(503, "the store cannot be written");
   }
+  const std::string shortage = disk_shortage(service.settings, service.folder, service.store.results_bytes());
+  if (!shortage.empty()) fail(503, shortage);
   response.set_content(R"({"status":"ready"})", "application/json");
 }
 

@@ -108,7 +108,7 @@ std::shared_ptr<Runner::Active> Runner::take_next(bool short_runs_only) {
   std::unique_lock lock(mutex_);
   while (!stopping_) {
     try {
-      if (!disk_shortage_now().empty()) {  // goes on when room returns
+      if (!has_room()) {
         wake_.wait_for(lock, store_retry);
         continue;
       }

@@ -68,6 +68,7 @@ class Runner {
   void expire_results();
   void end_for(Active& active, const Failure& failure);
   std::string disk_shortage_now();
+  bool has_room();
 
   Store& store_;
   const StateFolder& folder_;
@@ -78,6 +79,7 @@ class Runner {
   std::condition_variable wake_, stopped_;
   std::map<std::string, std::shared_ptr<Active>> active_;
   int running_workers_ = 0;
+  bool waits_for_room_ = false;
   std::atomic<bool> stopping_{false};
   std::vector<std::thread> workers_;
 };

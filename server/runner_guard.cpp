@@ -64,6 +64,16 @@ std::string Runner::disk_shortage_now() {
   return disk_shortage(settings_, folder_, bytes);
 }
 
+/// Whether the queue may go on; the log tells when that changes. mutex_ is held.
+bool Runner::has_room() {
+  const std::string shortage = disk_shortage_now();
+  if (shortage.empty() == waits_for_room_) {
+    waits_for_room_ = !shortage.empty();
+    spdlog::warn("the queue {}{}", waits_for_room_ ? "waits: " : "goes on", shortage);
+  }
+  return !waits_for_room_;
+}
+
 /// The run ends within one step, failed. mutex_ is held.
 void Runner::end_for(Active& active, const Failure& failure) {
   if (active.limit || active.cancel) return;

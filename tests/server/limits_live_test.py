@@ -104,8 +104,12 @@ class QuotaTest(ServerTest):
         self.assertEqual(self.server.get(f"/v1/runs/{run_id}/results").status, 200)
         self.assert_problem(self.server.call("POST", "/v1/runs", small_case()), 507)
         self.assertEqual(self.server.get(f"/v1/runs/{waiting}").json()["status"], "queued")
+        self.assert_problem(self.server.get("/readyz"), 503)
         self.assertEqual(self.server.call("DELETE", f"/v1/runs/{run_id}").status, 204)
         self.server.wait_for(waiting, "succeeded")
+        with open(os.path.join(self.folder, "server.log")) as file:
+            log = file.read()
+        self.assertLess(log.index("the queue waits: "), log.index("the queue goes on"))
 
 
 @unittest.skipUnless(os.geteuid() == 0, "mounting a small disk needs root")
