@@ -1,6 +1,7 @@
 #include "server/client.hpp"
 
 #include <csignal>
+#include <cstdlib>
 #include <fstream>
 #include <stdexcept>
 
@@ -63,6 +64,8 @@ Client::Client(const std::string& url) : url_(url), http_(url) {
   std::signal(SIGPIPE, SIG_IGN);
   http_.set_connection_timeout(connect_timeout_s);
   http_.set_read_timeout(answer_timeout_s);
+  if (const char* key = std::getenv("QUICKSAND_KEY"))  // not an option: others see a process's command line
+    http_.set_default_headers({{"Authorization", std::string("Bearer ") + key}});
 }
 
 httplib::Result Client::checked(httplib::Result result) const {
@@ -80,9 +83,10 @@ RemoteRun Client::read_run(const httplib::Response& response) const {
   return run;
 }
 
-RemoteRun Client::submit(const std::string& case_text, const std::string& label) {
-  std::string path = "/v1/runs";
-  if (!label.empty()) path = httplib::append_query_params(path, {{"label", label}});
+RemoteRun Client::submit(const std::string& case_text, const std::string& label, int priority) {
+  httplib::Params params{{"priority", std::to_string(priority)}};
+  if (!label.empty()) params.emplace("label", label);
+  const std::string path = httplib::append_query_params("/v1/runs", params);
   return read_run(*checked(http_.Post(path, case_text, "application/json")));
 }
 
@@ -100,6 +104,10 @@ std::vector<RemoteRun> Client::list() {
 RemoteRun Client::cancel(const std::string& id) {
   return read_run(*checked(http_.Post("/v1/runs/" + id + "/cancel", "", "application/json")));
 }
+
+void Client::remove(const std::string& id) { checked(http_.Delete("/v1/runs/" + id)); }
+
+std::string Client::log(const std::string& id) { return checked(http_.Get("/v1/runs/" + id + "/log"))->body; }
 
 RemoteRun Client::wait(const std::string& id, const std::function<void(const RemoteRun&)>& show) {
   RemoteRun run = find(id);

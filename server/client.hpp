@@ -34,10 +34,14 @@ class Client {
  public:
   explicit Client(const std::string& url);
 
-  RemoteRun submit(const std::string& case_text, const std::string& label);
+  RemoteRun submit(const std::string& case_text, const std::string& label, int priority);
   RemoteRun find(const std::string& id);
   std::vector<RemoteRun> list();
   RemoteRun cancel(const std::string& id);
+  /// Deletes an ended run with its files.
+  void remove(const std::string& id);
+  /// What happened in the run, line by line.
+  std::string log(const std::string& id);
   /// Waits for the run's end; `show` sees every progress.
   RemoteRun wait(const std::string& id, const std::function<void(const RemoteRun&)>& show);
   std::vector<StoredResult> results(const std::string& id);

@@ -31,8 +31,10 @@ std::optional<Milliseconds> parse_rfc3339(const std::string& text) {
     Milliseconds unit = 100;  // digits after the third are below our resolution
     for (++rest; *rest >= '0' && *rest <= '9'; ++rest, unit /= 10) fraction += (*rest - '0') * unit;
   }
-  if (*rest != 'Z' || rest[1] != '\0') return {};
-  return static_cast<Milliseconds>(timegm(&parts)) * 1000 + fraction;
+  if (*rest != 'Z' || rest + 1 != text.data() + text.size()) return {};
+  const Milliseconds seconds = timegm(&parts);
+  if (seconds < 0) return {};
+  return seconds * 1000 + fraction;
 }
 
 }  // namespace quicksand

@@ -75,7 +75,7 @@ int submit_command(const SubmitCommand& command) {
     text = with_preset(*text, *command.preset);
   }
   return with_server(command.url, [&](Client& client) {
-    RemoteRun run = client.submit(*text, command.label);
+    RemoteRun run = client.submit(*text, command.label, command.priority);
     std::cout << run.id << std::endl;
     if (!command.wait) return exit_status::ok;
     {
@@ -113,6 +113,20 @@ int fetch_command(const std::string& url, const std::string& id, const std::stri
       std::cout << (std::filesystem::path(out) / result.name).string() << "  " << result.bytes << " bytes\n";
     }
     std::cout << files_text(out);
+    return exit_status::ok;
+  });
+}
+
+int log_command(const std::string& url, const std::string& id) {
+  return with_server(url, [&](Client& client) {
+    std::cout << client.log(id);
+    return exit_status::ok;
+  });
+}
+
+int delete_command(const std::string& url, const std::string& id) {
+  return with_server(url, [&](Client& client) {
+    client.remove(id);
     return exit_status::ok;
   });
 }

@@ -3,6 +3,8 @@
 
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "engine/scene/scene.hpp"
 
@@ -29,9 +31,22 @@ int check_command(const std::string& case_file, const std::optional<Preset>& pre
 /// Prints the schema of case files.
 int schema_command();
 
+struct ServeCommand {
+  std::string config;                                    ///< file of settings; empty: none
+  bool print = false;                                    ///< print the settings instead
+  std::vector<std::pair<std::string, std::string>> set;  ///< settings of the command line, which win
+};
+int serve_command(const ServeCommand& command);
+
+/// On the records in the folder `state`, whether a server runs there or not.
+int create_key_command(const std::string& state, const std::string& name, const std::string& role);
+int list_keys_command(const std::string& state);
+int revoke_key_command(const std::string& state, const std::string& id);
+
 struct SubmitCommand {
   std::string case_file, url, label;
   std::optional<Preset> preset;
+  int priority = 0;
   bool wait = false;
 };
 int submit_command(const SubmitCommand& command);
@@ -40,6 +55,8 @@ int submit_command(const SubmitCommand& command);
 int status_command(const std::string& url, const std::string& id);
 int fetch_command(const std::string& url, const std::string& id, const std::string& out);
 int cancel_command(const std::string& url, const std::string& id);
+int log_command(const std::string& url, const std::string& id);
+int delete_command(const std::string& url, const std::string& id);
 
 /// "draft", "standard", "fine".
 const char* preset_name(Preset preset);

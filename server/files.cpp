@@ -23,6 +23,8 @@ bool write_all(int descriptor, const std::string& text) {
 
 }  // namespace
 
+void make_private() { ::umask(0077); }
+
 std::optional<std::string> read_text(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
   if (!in || std::filesystem::is_directory(file)) return {};

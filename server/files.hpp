@@ -5,6 +5,9 @@
 
 namespace quicksand {
 
+/// What this process creates from now on is for its own user alone.
+void make_private();
+
 /// Whole text file; empty when it cannot be read.
 std::optional<std::string> read_text(const std::filesystem::path& file);
 

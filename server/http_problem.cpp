@@ -9,6 +9,8 @@ const char* title(int status) {
   switch (status) {
     case 400:
       return "Bad request";
+    case 401:
+      return "Unauthorized";
     case 403:
       return "Forbidden";
     case 404:
@@ -17,6 +19,8 @@ const char* title(int status) {
       return "Method not allowed";
     case 409:
       return "Conflict";
+    case 410:
+      return "Gone";
     case 411:
       return "Length required";
     case 413:
@@ -29,6 +33,10 @@ const char* title(int status) {
       return "Range not satisfiable";
     case 422:
       return "Unprocessable content";
+    case 421:
+      return "Misdirected request";
+    case 429:
+      return "Too many requests";
     case 503:
       return "Service unavailable";
     case 507:
@@ -60,6 +68,7 @@ std::string problem_json(const Problem& problem) {
 
 void answer(httplib::Response& response, const Problem& problem) {
   response.status = problem.status;
+  if (problem.status == 401) response.set_header("WWW-Authenticate", "Bearer realm=\"quicksand\"");
   if (!problem.allow.empty()) response.set_header("Allow", problem.allow);
   if (problem.retry_after_s > 0) response.set_header("Retry-After", std::to_string(problem.retry_after_s));
   response.set_content(problem_json(problem), "application/problem+json");

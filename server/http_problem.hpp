@@ -14,7 +14,7 @@ struct Problem {
   std::string detail;
   std::vector<Fault> errors;  ///< 422: every fault of the case with its JSON pointer
   std::string allow;          ///< 405: the methods that would be right
-  int retry_after_s = 0;      ///< 503: when to try again
+  int retry_after_s = 0;      ///< 429, 503: when to try again
 };
 
 /// Thrown by handlers, caught by the dispatcher.

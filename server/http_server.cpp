@@ -6,13 +6,15 @@
 #include <charconv>
 #include <stdexcept>
 
+#include "server/cors.hpp"
 #include "server/routes.hpp"
+#include "server/run_json.hpp"
 
 namespace quicksand {
 namespace {
 
-/// Connections served at a time. Long polls hold at most half of them (Limits::max_waiters).
-constexpr std::size_t connection_threads = 32;
+/// Connections served at a time, besides those that long polls, event streams and data may hold.
+constexpr Count connection_threads = 64;
 constexpr int first_port = 8080, last_port = 8179;
 /// s without a byte before a connection is given up.
 constexpr int read_timeout_s = 5, write_timeout_s = 5;
@@ -47,22 +49,34 @@ bool is_json(const std::string& type) {
 /// must not see them. The request is the library's own object, created non-const for this connection.
 void hide_ranges(const httplib::Request& request) { const_cast<httplib::Request&>(request).ranges.clear(); }
 
+/// The service sends data, never a page: nothing in it may run, be framed or be read by other sites.
+void add_security_headers(httplib::Response& response) {
+  response.set_header("X-Content-Type-Options", "nosniff");
+  response.set_header("Content-Security-Policy", "default-src 'none'; frame-ancestors 'none'");
+  response.set_header("Cross-Origin-Resource-Policy", "same-origin");
+  response.set_header("Referrer-Policy", "no-referrer");
+  if (!response.has_header("Cache-Control")) response.set_header("Cache-Control", "private, no-cache");
+}
+
 void log_answer(const httplib::Request& request, const httplib::Response& response) {
   const bool routine = request.method == "GET" && response.status < 400;
   spdlog::log(routine ? spdlog::level::debug : spdlog::level::info, "http method={} path={} status={}",
-              request.method, request.path, response.status);
+              quoted(request.method), quoted(request.path), response.status);
 }
 
 }  // namespace
 
-std::optional<Problem> screen_request(const httplib::Request& request, const Limits& limits) {
+std::optional<Problem> screen_request(const httplib::Request& request, const Settings& settings) {
   if (request.has_header("Transfer-Encoding"))
     return refusal(411, "send Content-Length instead of Transfer-Encoding");
   if (request.has_header("Content-Encoding")) return refusal(415, "send the body without Content-Encoding");
+  if (request.version == "HTTP/1.1" && request.get_header_value_count("Host") != 1)
+    return refusal(400, "one Host header is needed");
   const auto length = content_length(request);
   if (!length) return refusal(400, "Content-Length must be one whole number");
-  if (*length > limits.max_body_bytes)
-    return refusal(413, "at most " + std::to_string(limits.max_body_bytes) + " bytes");
+  if (*length > static_cast<std::uint64_t>(settings.max_body_bytes))
+    return refusal(413, "a body of " + std::to_string(*length) + " bytes; at most " +
+                            named_limit(settings, &Settings::max_body_bytes));
   const RouteMatch match = find_route(request.method, request.path);
   if (match.route && match.route->takes_case) {
     if (!request.has_header("Content-Length")) return refusal(411, "Content-Length is missing");
@@ -71,6 +85,11 @@ std::optional<Problem> screen_request(const httplib::Request& request, const Lim
       return refusal(415, "send the case with Content-Type: application/json");
   }
   return {};
+}
+
+std::optional<Problem> HttpServer::screen(const httplib::Request& request) {
+  if (auto refused = screen_request(request, service_.settings)) return refused;
+  return screen_caller(service_, request);
 }
 
 void PatientServer::widen_backlog() { ::listen(svr_sock_, backlog); }
@@ -82,10 +101,13 @@ HttpServer::HttpServer(Service& service) : service_(service) {
 
 void HttpServer::install_limits() {
   http_.set_keep_alive_max_count(1);  // an idle client must not hold a thread
-  http_.new_task_queue = [] { return new httplib::ThreadPool(connection_threads); };
+  const Settings& s = service_.settings;
+  const auto threads =
+      static_cast<std::size_t>(connection_threads + s.max_waiters + s.max_streams + s.max_readers);
+  http_.new_task_queue = [threads] { return new httplib::ThreadPool(threads); };
   http_.set_read_timeout(read_timeout_s);
   http_.set_write_timeout(write_timeout_s);
-  http_.set_payload_max_length(service_.limits.max_body_bytes);
+  http_.set_payload_max_length(static_cast<std::size_t>(service_.settings.max_body_bytes));
   http_.set_tcp_nodelay(true);
   // Not the library's default, SO_REUSEPORT: with it two servers would share a port.
   http_.set_socket_options([](socket_t socket) {
@@ -98,7 +120,7 @@ void HttpServer::install_handlers() {
   using Handled = httplib::Server::HandlerResponse;
   http_.set_pre_routing_handler([this](const httplib::Request& request, httplib::Response& response) {
     hide_ranges(request);
-    if (const auto refused = screen_request(request, service_.limits)) {
+    if (const auto refused = screen(request)) {
       answer(response, *refused);
       return Handled::Handled;
     }
@@ -112,7 +134,7 @@ void HttpServer::install_handlers() {
     dispatch(service_, request, response);
   });
   http_.set_expect_100_continue_handler([this](const httplib::Request& request, httplib::Response& response) {
-    const auto refused = screen_request(request, service_.limits);
+    const auto refused = screen(request);
     if (!refused) return 100;
     answer(response, *refused);
     return refused->status;
@@ -125,12 +147,13 @@ void HttpServer::install_handlers() {
   }));
   http_.set_exception_handler(
       [](const httplib::Request& request, httplib::Response& response, std::exception_ptr) {
-        spdlog::error("http method={} path={} exception", request.method, request.path);
+        spdlog::error("http method={} path={} exception", quoted(request.method), quoted(request.path));
         answer(response, Problem{});
       });
-  http_.set_post_routing_handler([](const httplib::Request&, httplib::Response& response) {
+  http_.set_post_routing_handler([this](const httplib::Request& request, httplib::Response& response) {
     if (response.status == 204) response.headers.erase("Content-Length");
-    response.set_header("X-Content-Type-Options", "nosniff");
+    add_security_headers(response);
+    add_cors_headers(service_.settings, request, response);
   });
   http_.set_logger(log_answer);
 }

@@ -1,14 +1,9 @@
 // Wires the command line to the commands.
 
-#include <spdlog/sinks/stdout_sinks.h>
-#include <spdlog/spdlog.h>
-
 #include <CLI/CLI.hpp>
 #include <iostream>
 
-#include "server/catalogue.hpp"
 #include "server/commands.hpp"
-#include "server/serve.hpp"
 #include "server/version.hpp"
 
 namespace quicksand {
@@ -16,24 +11,21 @@ namespace {
 
 const std::map<std::string, Preset> presets{
     {"draft", Preset::draft}, {"standard", Preset::standard}, {"fine", Preset::fine}};
-const std::map<std::string, spdlog::level::level_enum> log_levels{{"debug", spdlog::level::debug},
-                                                                  {"info", spdlog::level::info},
-                                                                  {"warning", spdlog::level::warn},
-                                                                  {"error", spdlog::level::err}};
 
 /// What the command line was read into, and the exit status of the chosen command.
 struct CommandLine {
   RunCommand run;
   std::string check_case;
   SubmitCommand submit;
-  ServeOptions serve;
+  ServeCommand serve;
   std::optional<Preset> check_preset;
-  std::string port = "8080", id, out, url = "http://127.0.0.1:8080";
-  spdlog::level::level_enum log_level = spdlog::level::info;
+  std::string id, out, url = "http://127.0.0.1:8080";
+  std::string key_state, key_name, key_role = "submit", key_id;
   int status = 0;
 };
 
 void add_url(CLI::App* command, CommandLine& line) {
+  command->footer("A service with API keys wants one in the environment: QUICKSAND_KEY.");
   command->add_option("--url", line.url, "the server")->envname("QUICKSAND_URL")->capture_default_str();
 }
 
@@ -43,21 +35,6 @@ void add_preset(CLI::App* command, std::optional<Preset>& preset) {
           "--preset", [&preset](const std::string& name) { preset = presets.at(name); },
           "replaces the case's numerics.preset")
       ->check(CLI::IsMember({"draft", "standard", "fine"}));
-}
-
-int start_server(CommandLine& line) {
-  auto log = spdlog::stderr_logger_mt("server");
-  log->set_pattern("%Y-%m-%dT%H:%M:%S.%eZ %l %v", spdlog::pattern_time_type::utc);
-  log->set_level(line.log_level);
-  spdlog::set_default_logger(log);
-  try {
-    line.serve.port = line.port == "auto" ? 0 : std::stoi(line.port);
-    serve(line.serve);
-    return exit_status::ok;
-  } catch (const std::exception& error) {
-    std::cerr << "cannot serve: " << error.what() << '\n';
-    return exit_status::failed;
-  }
 }
 
 void add_local_commands(CLI::App& app, CommandLine& line) {
@@ -78,23 +55,66 @@ void add_local_commands(CLI::App& app, CommandLine& line) {
   schema->callback([&line] { line.status = schema_command(); });
 }
 
+/// An option that sets `setting`, whatever the configuration file says.
+void add_setting(CLI::App* serve, CommandLine& line, const char* option, const char* setting,
+                 const char* help) {
+  serve->add_option_function<std::string>(
+      option,
+      [&line, setting](const std::string& value) {
+        line.serve.set.push_back({setting, value});
+      },
+      help);
+}
+
 void add_serve_command(CLI::App& app, CommandLine& line) {
   CLI::App* serve = app.add_subcommand("serve", "answer HTTP and compute what is submitted");
-  line.serve.cases = find_cases();
-  serve->add_option("--port", line.port, "TCP port; 0 or auto: the first free one from 8080")
-      ->check(CLI::Range(0, 65535) | CLI::IsMember({"auto"}))
+  serve->add_option("--config", line.serve.config, "file of settings");
+  serve->add_flag("--print-config", line.serve.print, "print every setting with its documentation and stop");
+  add_setting(serve, line, "--state", "state", "folder of the runs and their records");
+  add_setting(serve, line, "--host", "host", "address to listen at");
+  add_setting(serve, line, "--port", "port", "TCP port; 0 or auto: the first free one from 8080");
+  add_setting(serve, line, "--workers", "workers", "runs computed at a time");
+  add_setting(serve, line, "--threads", "threads_per_run", "threads per run; 0: all cores");
+  add_setting(serve, line, "--cases", "cases", "folder of shipped cases");
+  add_setting(serve, line, "--log-level", "log_level", "debug, info, warning or error");
+  serve->add_option_function<std::vector<std::string>>(
+      "--set",
+      [&line](const std::vector<std::string>& pairs) {
+        for (const std::string& pair : pairs) {
+          const auto equals = std::min(pair.find('='), pair.size());
+          line.serve.set.push_back({pair.substr(0, equals), pair.substr(std::min(equals + 1, pair.size()))});
+        }
+      },
+      "NAME=VALUE: any setting of --print-config");
+  serve->callback([&line] { line.status = serve_command(line.serve); });
+}
+
+void add_key_commands(CLI::App& app, CommandLine& line) {
+  CLI::App* keys = app.add_subcommand("keys", "who may use a service: create, list and revoke API keys");
+  keys->require_subcommand(1);
+  keys->add_option("--state", line.key_state, "folder of the service's records")->required();
+  CLI::App* create = keys->add_subcommand("create", "make a key and print it once");
+  create->add_option("NAME", line.key_name, "whose it is; runs belong to the name")->required();
+  create->add_option("--role", line.key_role, "read: sees all runs; submit: its own runs; admin: everything")
+      ->check(CLI::IsMember({"read", "submit", "admin"}))
       ->capture_default_str();
-  serve->add_option("--state", line.serve.state, "folder of the runs and their records")->required();
-  serve->add_option("--host", line.serve.host, "address to listen at")->capture_default_str();
-  serve->add_option("--workers", line.serve.runner.workers, "runs computed at a time")
-      ->check(CLI::Range(1, 64))
-      ->capture_default_str();
-  serve->add_option("--threads", line.serve.runner.threads, "threads per run; 0: all cores")
-      ->check(CLI::Range(0, 1024));
-  serve->add_option("--cases", line.serve.cases, "folder of shipped cases")->check(CLI::ExistingDirectory);
-  serve->add_option("--log-level", line.log_level, "debug, info, warning or error")
-      ->transform(CLI::CheckedTransformer(log_levels));
-  serve->callback([&line] { line.status = start_server(line); });
+  create->callback(
+      [&line] { line.status = create_key_command(line.key_state, line.key_name, line.key_role); });
+  keys->add_subcommand("list", "all keys, revoked ones too")->callback([&line] {
+    line.status = list_keys_command(line.key_state);
+  });
+  CLI::App* revoke = keys->add_subcommand("revoke", "end a key at once");
+  revoke->add_option("ID", line.key_id, "first column of the list")->required();
+  revoke->callback([&line] { line.status = revoke_key_command(line.key_state, line.key_id); });
+}
+
+/// A command about one run that needs nothing but its id.
+void add_run_command(CLI::App& app, CommandLine& line, const char* name, const char* help,
+                     int (*command)(const std::string& url, const std::string& id)) {
+  CLI::App* sub = app.add_subcommand(name, help);
+  sub->add_option("ID", line.id, "run")->required();
+  add_url(sub, line);
+  sub->callback([&line, command] { line.status = command(line.url, line.id); });
 }
 
 void add_remote_commands(CLI::App& app, CommandLine& line) {
@@ -103,6 +123,7 @@ void add_remote_commands(CLI::App& app, CommandLine& line) {
   add_url(submit, line);
   add_preset(submit, line.submit.preset);
   submit->add_option("--label", line.submit.label, "a word to find the run by");
+  submit->add_option("--priority", line.submit.priority, "-10 to 10, higher ones first; above 0 for admins");
   submit->add_flag("--wait", line.submit.wait, "show progress until it ends");
   submit->callback([&line] {
     line.submit.url = line.url;
@@ -120,10 +141,9 @@ void add_remote_commands(CLI::App& app, CommandLine& line) {
   add_url(fetch, line);
   fetch->callback([&line] { line.status = fetch_command(line.url, line.id, line.out); });
 
-  CLI::App* cancel = app.add_subcommand("cancel", "end a run");
-  cancel->add_option("ID", line.id, "run")->required();
-  add_url(cancel, line);
-  cancel->callback([&line] { line.status = cancel_command(line.url, line.id); });
+  add_run_command(app, line, "cancel", "end a run", cancel_command);
+  add_run_command(app, line, "log", "what happened in a run", log_command);
+  add_run_command(app, line, "delete", "delete a run that has ended, with its files", delete_command);
 }
 
 }  // namespace
@@ -136,6 +156,7 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   quicksand::add_local_commands(app, line);
   quicksand::add_serve_command(app, line);
+  quicksand::add_key_commands(app, line);
   quicksand::add_remote_commands(app, line);
   try {
     app.parse(argc, argv);

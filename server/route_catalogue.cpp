@@ -3,6 +3,7 @@
 #include "api/case_json.hpp"
 #include "api/openapi.hpp"
 #include "server/http_problem.hpp"
+#include "server/limits.hpp"
 #include "server/route_handlers.hpp"
 #include "server/run_json.hpp"
 #include "server/version.hpp"
@@ -31,22 +32,21 @@ void get_openapi(Service&, const Call&, httplib::Response& response) {
 }
 
 void get_service_info(Service& service, const Call&, httplib::Response& response) {
-  const Limits& limits = service.limits;
+  Json limits = Json::object();
+  for (const Setting& setting : settings_table())
+    if (const auto count = std::get_if<Count Settings::*>(&setting.place))
+      if (std::string_view(setting.name).starts_with("max_"))
+        limits[setting.name] = service.settings.*(*count);
   response.set_content(dump({{"name", "quicksand"},
                              {"version", engine_version},
                              {"case_formats", {"quicksand.case/1"}},
                              {"started", rfc3339(service.started)},
-                             {"workers", service.workers.workers},
-                             {"threads_per_run", service.workers.threads},
+                             {"workers", service.settings.workers},
+                             {"threads_per_run", service.settings.threads_per_run},
                              {"runs",
                               {{"queued", service.store.count(RunState::queued)},
                                {"running", service.store.count(RunState::running)}}},
-                             {"limits",
-                              {{"max_body_bytes", limits.max_body_bytes},
-                               {"max_queued", limits.max_queued},
-                               {"max_page", limits.max_page},
-                               {"max_wait_s", limits.max_wait_s},
-                               {"max_waiters", limits.max_waiters}}}}),
+                             {"limits", limits}}),
                        "application/json");
 }
 
@@ -62,6 +62,8 @@ void get_readyz(Service& service, const Call&, httplib::Response& response) {
     spdlog::error("not ready: {}", error.what());
     fail(503, "the store cannot be written");
   }
+  const std::string shortage = disk_shortage(service.settings, service.folder, service.store.results_bytes());
+  if (!shortage.empty()) fail(503, shortage);
   response.set_content(R"({"status":"ready"})", "application/json");
 }
 

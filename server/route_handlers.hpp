@@ -15,6 +15,13 @@ void post_cancel(Service& service, const Call& call, httplib::Response& response
 // route_status.cpp
 void get_run(Service& service, const Call& call, httplib::Response& response);
 
+// route_events.cpp
+void get_run_events(Service& service, const Call& call, httplib::Response& response);
+
+// route_data.cpp
+void get_frame(Service& service, const Call& call, httplib::Response& response);
+void get_series(Service& service, const Call& call, httplib::Response& response);
+
 // route_results.cpp
 void get_run_case(Service& service, const Call& call, httplib::Response& response);
 void get_run_log(Service& service, const Call& call, httplib::Response& response);
@@ -30,7 +37,12 @@ void get_service_info(Service& service, const Call& call, httplib::Response& res
 void get_healthz(Service& service, const Call& call, httplib::Response& response);
 void get_readyz(Service& service, const Call& call, httplib::Response& response);
 
+// route_metrics.cpp
+void get_metrics(Service& service, const Call& call, httplib::Response& response);
+
 /// The run of the route's first `{id}`, or 404.
 StoredRun run_of(Service& service, const Call& call);
+/// The same, or 410 when its results were removed by policy.
+StoredRun run_with_results(Service& service, const Call& call);
 
 }  // namespace quicksand

@@ -37,7 +37,7 @@ void stream(std::shared_ptr<const ReadOnlyFile> file, std::size_t first, std::si
 }
 
 StoredResult result_of(Service& service, const Call& call) {
-  const StoredRun run = run_of(service, call);
+  const StoredRun run = run_with_results(service, call);
   for (const StoredResult& result : service.store.results(run.id))
     if (result.name == call.captured.at(1)) return result;
   fail(404, is_active(run.state) ? "results are listed when the run has ended"
@@ -68,7 +68,7 @@ void get_run_log(Service& service, const Call& call, httplib::Response& response
 }
 
 void get_results(Service& service, const Call& call, httplib::Response& response) {
-  const StoredRun run = run_of(service, call);
+  const StoredRun run = run_with_results(service, call);
   response.set_content(dump(results_json(run.id, service.store.results(run.id))), "application/json");
 }
 

@@ -1,11 +1,11 @@
 #include <spdlog/spdlog.h>
-#include <sys/sysinfo.h>
 
 #include <algorithm>
-#include <charconv>
 
 #include "api/case_json.hpp"
+#include "server/http_parameters.hpp"
 #include "server/http_problem.hpp"
+#include "server/limits.hpp"
 #include "server/route_handlers.hpp"
 #include "server/run_json.hpp"
 #include "server/version.hpp"
@@ -16,6 +16,7 @@ namespace {
 constexpr std::size_t max_label_bytes = 128;
 constexpr std::size_t max_key_bytes = 255;
 constexpr int default_page = 50;
+constexpr int max_priority = 10;
 constexpr int full_retry_s = 60;  ///< s, `Retry-After` of a full queue
 
 struct PlannedCase {
@@ -23,15 +24,8 @@ struct PlannedCase {
   Plan plan;
 };
 
-/// Memory of this machine in bytes.
-double machine_memory() {
-  struct sysinfo facts {};
-  sysinfo(&facts);
-  return static_cast<double>(facts.totalram) * static_cast<double>(facts.mem_unit);
-}
-
-/// The body as a scene that this machine can run, or 422 with every fault.
-PlannedCase plan_case(const std::string& text) {
+/// The body as a scene that this service may run, or 422 with every fault.
+PlannedCase plan_case(const Settings& settings, const std::string& text) {
   ParsedCase parsed = parse_case(text);
   Problem problem;
   problem.status = 422;
@@ -39,13 +33,26 @@ PlannedCase plan_case(const std::string& text) {
   problem.errors = std::move(parsed.faults);
   if (!parsed.scene) throw ProblemError{problem};
   PlannedCase planned{*parsed.scene, make_plan(*parsed.scene)};
-  if (planned.plan.memory_bytes > machine_memory()) {
-    problem.errors = {
-        {"/domain/cell_size", "the run needs " + std::to_string(planned.plan.memory_bytes / 1e9) +
-                                  " GB of memory, more than this machine has; choose larger cells"}};
-    throw ProblemError{problem};
-  }
+  problem.errors = too_large(settings, cost_of(planned.plan));
+  if (!problem.errors.empty()) throw ProblemError{problem};
   return planned;
+}
+
+void refuse_on_a_full_disk(Service& service) {
+  const std::string shortage = disk_shortage(service.settings, service.folder, service.store.results_bytes());
+  if (!shortage.empty()) fail(507, shortage);
+}
+
+/// Without keys there are no owners to be fair to.
+QueueLimits queue_limits(const Settings& settings, const std::string& owner) {
+  return {settings.max_queued, owner.empty() ? INT64_MAX : settings.max_runs_per_key};
+}
+
+int checked_priority(const Call& call) {
+  const int priority = checked_number<int>(call, "priority", -max_priority, max_priority, 0);
+  if (priority > 0 && call.caller.role != Role::admin)
+    fail(403, "priority above 0 needs a key with the role admin");
+  return priority;
 }
 
 std::string checked_label(const Call& call) {
@@ -65,19 +72,7 @@ std::string checked_key(const Call& call) {
   return key;
 }
 
-template <typename Number>
-Number checked_number(const Call& call, const char* name, Number least, Number most, Number absent) {
-  if (!call.request.has_param(name)) return absent;
-  const std::string text = call.parameter(name);
-  Number number{};
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (error != std::errc{} || end != text.data() + text.size() || number < least || number > most)
-    fail(400, std::string(name) + ": a whole number from " + std::to_string(least) + " to " +
-                  std::to_string(most));
-  return number;
-}
-
-RunFilter checked_filter(const Call& call, const Limits& limits) {
+RunFilter checked_filter(const Call& call, const Settings& settings) {
   RunFilter filter;
   if (call.request.has_param("status")) {
     filter.state = state_from_name(call.parameter("status"));
@@ -91,7 +86,8 @@ RunFilter checked_filter(const Call& call, const Limits& limits) {
   }
   if (call.request.has_param("page_token"))
     filter.before_sequence = checked_number<long long>(call, "page_token", 1, INT64_MAX, 0);
-  filter.limit = checked_number<int>(call, "limit", 1, limits.max_page, default_page);
+  if (call.caller.role == Role::submit) filter.owner = call.caller.name;
+  filter.limit = checked_number<int>(call, "limit", 1, static_cast<int>(settings.max_page), default_page);
   return filter;
 }
 
@@ -99,25 +95,50 @@ RunFilter checked_filter(const Call& call, const Limits& limits) {
 
 StoredRun run_of(Service& service, const Call& call) {
   auto run = service.store.find(call.captured.at(0));
-  if (!run) fail(404, "no run " + call.captured.at(0));
+  if (!run || !call.caller.sees(run->owner)) fail(404, "no run " + call.captured.at(0));
   return *run;
+}
+
+StoredRun run_with_results(Service& service, const Call& call) {
+  StoredRun run = run_of(service, call);
+  if (run.expired)
+    fail(410,
+         "the results were removed at " + rfc3339(*run.expired) + " by the service's policy (keep_days)");
+  return run;
 }
 
 void post_run(Service& service, const Call& call, httplib::Response& response) {
   NewRun wanted;
   wanted.label = checked_label(call);
   wanted.idempotency_key = checked_key(call);
-  wanted.name = plan_case(call.request.body).scene.name;
+  wanted.priority = checked_priority(call);
+  refuse_on_a_full_disk(service);
+  const PlannedCase planned = plan_case(service.settings, call.request.body);
+  wanted.name = planned.scene.name;
+  wanted.cost = cost_of(planned.plan);
+  wanted.owner = call.caller.name;
   wanted.case_text = call.request.body;
   wanted.engine_version = engine_version;
-  const CreateOutcome outcome = service.store.create(wanted, service.limits.max_queued);
+  const CreateOutcome outcome = service.store.create(wanted, queue_limits(service.settings, wanted.owner));
   switch (outcome.kind) {
     case CreateOutcome::Kind::conflict:
       fail(422, "this Idempotency-Key was used for another case or label");
+    case CreateOutcome::Kind::over_quota:
+      throw ProblemError{{429,
+                          wanted.owner + " has as many runs waiting or computing as one key may: " +
+                              named_limit(service.settings, &Settings::max_runs_per_key),
+                          {},
+                          {},
+                          full_retry_s}};
     case CreateOutcome::Kind::full:
-      throw ProblemError{{503, "too many runs are queued", {}, {}, full_retry_s}};
+      throw ProblemError{{503,
+                          "the queue is full: " + named_limit(service.settings, &Settings::max_queued),
+                          {},
+                          {},
+                          full_retry_s}};
     case CreateOutcome::Kind::created:
-      spdlog::info("run={} queued name=\"{}\"", outcome.run->id, outcome.run->name);
+      spdlog::info("run={} queued owner={} name={}", outcome.run->id, quoted(outcome.run->owner),
+                   quoted(outcome.run->name));
       service.runner.wake();
       break;
     case CreateOutcome::Kind::repeated:
@@ -125,15 +146,15 @@ void post_run(Service& service, const Call& call, httplib::Response& response) {
   }
   response.status = 201;
   response.set_header("Location", "/v1/runs/" + outcome.run->id);
-  response.set_content(dump(run_json(*outcome.run)), "application/json");
+  response.set_content(dump(run_json(*outcome.run, service.settings)), "application/json");
 }
 
-void post_validate(Service&, const Call& call, httplib::Response& response) {
-  response.set_content(plan_json(plan_case(call.request.body).plan), "application/json");
+void post_validate(Service& service, const Call& call, httplib::Response& response) {
+  response.set_content(plan_json(plan_case(service.settings, call.request.body).plan), "application/json");
 }
 
 void get_runs(Service& service, const Call& call, httplib::Response& response) {
-  RunFilter filter = checked_filter(call, service.limits);
+  RunFilter filter = checked_filter(call, service.settings);
   const auto page = static_cast<std::size_t>(filter.limit);
   ++filter.limit;  // one more tells whether there is a next page
   std::vector<StoredRun> runs = service.store.list(filter);
@@ -143,19 +164,19 @@ void get_runs(Service& service, const Call& call, httplib::Response& response) {
     next = std::to_string(runs.back().sequence);
   }
   Json list = Json::array();
-  for (const StoredRun& run : runs) list.push_back(run_json(run));
+  for (const StoredRun& run : runs) list.push_back(run_json(run, service.settings));
   response.set_content(dump({{"runs", list}, {"next_page_token", next}}), "application/json");
 }
 
 void post_cancel(Service& service, const Call& call, httplib::Response& response) {
-  const auto run = service.runner.cancel(call.captured.at(0));
+  const auto run = service.runner.cancel(run_of(service, call).id);
   if (!run) fail(404, "no run " + call.captured.at(0));
   spdlog::info("run={} cancel asked for, now {}", run->id, state_name(run->state));
-  response.set_content(dump(run_json(*run)), "application/json");
+  response.set_content(dump(run_json(*run, service.settings)), "application/json");
 }
 
 void delete_run(Service& service, const Call& call, httplib::Response& response) {
-  const std::string& id = call.captured.at(0);
+  const std::string id = run_of(service, call).id;
   switch (service.store.remove(id)) {
     case Store::Removal::unknown:
       fail(404, "no run " + id);

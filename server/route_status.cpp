@@ -26,22 +26,6 @@ std::string weak_etag(const StoredRun& run) {
   return "W/\"" + run.id + "-" + std::to_string(run.revision) + "\"";
 }
 
-/// A place among the long polls, while it lives.
-class Waiter {
- public:
-  explicit Waiter(Service& service) : service_(service) {
-    admitted_ = ++service.waiters <= service.limits.max_waiters;
-  }
-  ~Waiter() { --service_.waiters; }
-  Waiter(const Waiter&) = delete;
-  Waiter& operator=(const Waiter&) = delete;
-  bool admitted() const { return admitted_; }
-
- private:
-  Service& service_;
-  bool admitted_;
-};
-
 /// Waits until the client would learn something: with If-None-Match any change of the record, without it
 /// the end of the run.
 StoredRun wait_for_news(Service& service, const Call& call, int seconds) {
@@ -59,14 +43,11 @@ StoredRun wait_for_news(Service& service, const Call& call, int seconds) {
 }  // namespace
 
 void get_run(Service& service, const Call& call, httplib::Response& response) {
-  const auto wait = preferred_wait(call.request, service.limits.max_wait_s);
+  const auto wait = preferred_wait(call.request, static_cast<int>(service.settings.max_wait_s));
   StoredRun run = run_of(service, call);
-  if (wait) {
-    const Waiter waiter(service);
-    if (waiter.admitted()) {
-      run = wait_for_news(service, call, *wait);
-      response.set_header("Preference-Applied", "wait=" + std::to_string(*wait));
-    }
+  if (const auto place = wait ? service.waiters.take() : nullptr) {
+    run = wait_for_news(service, call, *wait);
+    response.set_header("Preference-Applied", "wait=" + std::to_string(*wait));
   }
   const std::string etag = weak_etag(run);
   response.set_header("ETag", etag);
@@ -76,7 +57,7 @@ void get_run(Service& service, const Call& call, httplib::Response& response) {
     response.status = 304;
     return;
   }
-  response.set_content(dump(run_json(run)), "application/json");
+  response.set_content(dump(run_json(run, service.settings)), "application/json");
 }
 
 }  // namespace quicksand

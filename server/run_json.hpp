@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/run/run.hpp"
+#include "server/settings.hpp"
 #include "server/store.hpp"
 
 namespace quicksand {
@@ -15,8 +16,11 @@ using Json = nlohmann::ordered_json;
 /// Text of a JSON value; bytes that are not UTF-8 are replaced.
 std::string dump(const Json& json);
 
+/// A text in quotes for one line of a log: what clients send cannot begin a line of its own.
+std::string quoted(const std::string& text);
+
 std::string progress_json(const Progress& progress);
-Json run_json(const StoredRun& run);
+Json run_json(const StoredRun& run, const Settings& settings);
 Json results_json(const std::string& id, const std::vector<StoredResult>& results);
 
 }  // namespace quicksand

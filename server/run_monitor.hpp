@@ -8,6 +8,7 @@
 
 #include "engine/run/run.hpp"
 #include "server/change_bell.hpp"
+#include "server/metrics.hpp"
 #include "server/state_folder.hpp"
 #include "server/store.hpp"
 
@@ -25,7 +26,7 @@ class StoreMonitor final : public RunMonitor {
   /// `cancel` and `stopping` end the run within one step. Opens the log; throws spdlog::spdlog_ex when the
   /// disk refuses.
   StoreMonitor(const StoredRun& run, Store& store, const StateFolder& folder, ChangeBell& bell,
-               const std::atomic<bool>& cancel, const std::atomic<bool>& stopping);
+               Metrics& metrics, const std::atomic<bool>& cancel, const std::atomic<bool>& stopping);
 
   void progress(const Progress& now) override;
   void log(const std::string& line) override;
@@ -39,6 +40,7 @@ class StoreMonitor final : public RunMonitor {
   std::string id_;
   Store& store_;
   ChangeBell& bell_;
+  Metrics& metrics_;
   const std::atomic<bool>&cancel_, &stopping_;
   std::shared_ptr<spdlog::logger> log_;
   Progress last_;

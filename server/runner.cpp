@@ -2,42 +2,33 @@
 
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <array>
+#include <cerrno>
+#include <system_error>
 
 #include "server/execute.hpp"
+#include "server/limits.hpp"
+#include "server/run_files.hpp"
+#include "server/run_json.hpp"
 #include "server/run_monitor.hpp"
-#include "server/sha256.hpp"
 
 namespace quicksand {
 namespace {
 
-/// The files of a complete run; `.part` beside them is what a killed server left.
-constexpr std::array<const char*, 3> result_names{"result.vtkhdf", "result.xdmf", "run.json"};
-
 /// Before a worker tries again after the store refused.
 constexpr std::chrono::seconds store_retry{1};
-
-void remove_results(const std::filesystem::path& folder) {
-  for (const char* name : result_names) {
-    std::filesystem::remove(folder / name);
-    std::filesystem::remove(folder / (std::string(name) + ".part"));
-  }
-}
-
-std::vector<StoredResult> collect_results(const std::filesystem::path& folder) {
-  std::vector<StoredResult> results;
-  for (const char* name : result_names) {
-    const auto file = folder / name;
-    if (std::filesystem::is_regular_file(file))
-      results.push_back({name, std::filesystem::file_size(file), sha256_file(file)});
-  }
-  return results;
-}
 
 std::string one_line(const std::vector<Fault>& faults) {
   std::string text;
   for (const Fault& fault : faults) text += (text.empty() ? "" : "; ") + fault.pointer + ": " + fault.detail;
   return text;
+}
+
+bool is_disk_full(const std::string& message) {
+  for (const int reason : {ENOSPC, EDQUOT})
+    if (message.find(std::generic_category().message(reason)) != std::string::npos) return true;
+  return false;
 }
 
 RunState end_state(RunStatus status) {
@@ -54,8 +45,9 @@ RunState end_state(RunStatus status) {
 
 }  // namespace
 
-Runner::Runner(Store& store, const StateFolder& folder, ChangeBell& bell, const RunnerOptions& options)
-    : store_(store), folder_(folder), bell_(bell), options_(options) {}
+Runner::Runner(Store& store, const StateFolder& folder, ChangeBell& bell, Metrics& metrics,
+               const Settings& settings)
+    : store_(store), folder_(folder), bell_(bell), metrics_(metrics), settings_(settings) {}
 
 Runner::~Runner() {
   begin_stop();
@@ -64,24 +56,16 @@ Runner::~Runner() {
 
 void Runner::start() {
   recover();
-  running_workers_ = options_.workers;
-  for (int i = 0; i < options_.workers; ++i) workers_.emplace_back([this] { work(); });
-}
-
-void Runner::recover() {
-  const Recovery recovery = store_.recover();
-  for (const auto& id : recovery.requeued)
-    spdlog::warn("run={} interrupted, queued again from its start", id);
-  for (const auto& id : recovery.interrupted) spdlog::error("run={} interrupted twice, failed", id);
-  for (const auto& id : recovery.canceled) spdlog::info("run={} canceled", id);
-  // Folders whose record is gone: the server died between deleting the record and its files.
-  for (const auto& entry : std::filesystem::directory_iterator(folder_.runs()))
-    if (!store_.find(entry.path().filename().string())) std::filesystem::remove_all(entry.path());
+  running_workers_ = static_cast<int>(settings_.workers);
+  const int for_short_runs = std::min(static_cast<int>(settings_.short_workers), running_workers_ - 1);
+  for (int i = 0; i < running_workers_; ++i)
+    workers_.emplace_back([this, only = i < for_short_runs] { work(only); });
+  workers_.emplace_back([this] { guard(); });
 }
 
 void Runner::wake() {
   const std::lock_guard lock(mutex_);
-  wake_.notify_one();
+  wake_.notify_all();  // not every worker takes every run
 }
 
 std::optional<StoredRun> Runner::cancel(const std::string& id) {
@@ -112,15 +96,27 @@ bool Runner::wait_stopped(std::chrono::milliseconds patience) {
   return false;
 }
 
-bool Runner::take_next(StoredRun& run, std::shared_ptr<Active>& active) {
+ClaimRules Runner::claim_rules(bool short_runs_only) const {
+  ClaimRules rules;
+  rules.free_memory = memory_limit(settings_);
+  for (const auto& [id, active] : active_) rules.free_memory -= active->run.cost.memory_bytes;
+  if (short_runs_only) rules.longest_s = static_cast<double>(settings_.short_run_s);
+  return rules;
+}
+
+std::shared_ptr<Runner::Active> Runner::take_next(bool short_runs_only) {
   std::unique_lock lock(mutex_);
   while (!stopping_) {
     try {
-      if (auto next = store_.claim_next()) {
-        run = std::move(*next);
-        active = std::make_shared<Active>();
-        active_[run.id] = active;
-        return true;
+      if (!has_room()) {
+        wake_.wait_for(lock, store_retry);
+        continue;
+      }
+      if (auto next = store_.claim_next(claim_rules(short_runs_only))) {
+        auto active = std::make_shared<Active>();
+        active->run = std::move(*next);
+        active_[active->run.id] = active;
+        return active;
       }
       wake_.wait(lock);
     } catch (const std::exception& error) {
@@ -128,23 +124,18 @@ bool Runner::take_next(StoredRun& run, std::shared_ptr<Active>& active) {
       wake_.wait_for(lock, store_retry);
     }
   }
-  return false;
+  return nullptr;
 }
 
-void Runner::work() {
-  StoredRun run;
-  std::shared_ptr<Active> active;
-  while (take_next(run, active)) {
+void Runner::work(bool short_runs_only) {
+  while (const auto active = take_next(short_runs_only)) {
     bell_.ring();
-    try {
-      execute_one(run, active->cancel);
-    } catch (const std::exception& error) {
-      spdlog::error("run={} its end could not be recorded: {}", run.id, error.what());
-    }
+    execute_one(*active);
     {
       const std::lock_guard lock(mutex_);
-      active_.erase(run.id);
+      active_.erase(active->run.id);
     }
+    wake_.notify_all();  // there is memory again
     bell_.ring();
   }
   const std::lock_guard lock(mutex_);
@@ -152,38 +143,69 @@ void Runner::work() {
   stopped_.notify_all();
 }
 
-void Runner::execute_one(const StoredRun& run, const std::atomic<bool>& cancel) {
-  spdlog::info("run={} started name=\"{}\"", run.id, run.name);
-  const auto folder = folder_.run(run.id);
-  std::optional<Failure> failure;
-  RunState end = RunState::failed;
-  std::vector<StoredResult> results;
+void Runner::execute_one(Active& active) {
+  const StoredRun& run = active.run;
+  spdlog::info("run={} started name={}", run.id, quoted(run.name));
+  End end;
   try {
-    std::filesystem::create_directories(folder);
-    remove_results(folder);
-    StoreMonitor monitor(run, store_, folder_, bell_, cancel, stopping_);
-    monitor.log("started, engine " + run.engine_version);
-    RunOptions options;
-    options.threads = options_.threads;
-    const Execution done =
-        execute(store_.case_text(run.id).value_or(""), {}, folder.string(), monitor, options);
-    monitor.flush();
-    end = done.faults.empty() ? end_state(done.report.status) : RunState::failed;
-    if (!done.faults.empty()) failure = Failure{"invalid_case", one_line(done.faults), 0, {}};
-    if (done.faults.empty() && end == RunState::failed) failure = done.report.failure;
-    if (end == RunState::canceled && stopping_ && !cancel) {
-      monitor.log("the server stops; the run is queued again");
-      spdlog::info("run={} queued again, the server stops", run.id);
-      return store_.requeue(run.id);
-    }
-    monitor.log(std::string("ended: ") + state_name(end) + (failure ? " " + failure->message : ""));
-    results = collect_results(folder);
+    end = compute(active);
+  } catch (const std::filesystem::filesystem_error& error) {  // its text holds paths of this machine
+    end.failure = Failure{"output", "cannot prepare the run's folder: " + error.code().message(), 0, {}};
   } catch (const std::exception& error) {
-    end = RunState::failed;
-    failure = Failure{"output", error.what(), 0, {}};
+    spdlog::error("run={} {}", run.id, error.what());
+    end.failure = Failure{"output", "cannot write in the run's folder", 0, {}};
   }
-  store_.finish(run.id, end, failure, results);
-  spdlog::info("run={} ended status={}{}", run.id, state_name(end), failure ? " code=" + failure->code : "");
+  if (end.failure && end.failure->code == "output" && is_disk_full(end.failure->message))
+    end.failure->code = "disk_full";
+  record(run, end);
+}
+
+Runner::End Runner::compute(Active& active) {
+  const StoredRun& run = active.run;
+  const auto folder = folder_.run(run.id);
+  std::filesystem::create_directories(folder);
+  remove_results(folder);
+  StoreMonitor monitor(run, store_, folder_, bell_, metrics_, active.cancel, stopping_);
+  RunOptions options;
+  options.threads = threads_for(settings_, run.cost);
+  monitor.log("started, engine " + run.engine_version + ", threads " + std::to_string(options.threads));
+  const Execution done =
+      execute(store_.case_text(run.id).value_or(""), {}, folder.string(), monitor, options);
+  monitor.flush();
+
+  End end;
+  end.state = done.faults.empty() ? end_state(done.report.status) : RunState::failed;
+  if (!done.faults.empty()) end.failure = Failure{"invalid_case", one_line(done.faults), 0, {}};
+  if (done.faults.empty() && end.state == RunState::failed) end.failure = done.report.failure;
+  const std::lock_guard lock(mutex_);
+  if (end.state == RunState::canceled && active.limit) {
+    end.state = RunState::failed;
+    end.failure = active.limit;
+    end.failure->time = done.report.sim_time;
+  }
+  end.again = end.state == RunState::canceled && stopping_ && !active.cancel;
+  monitor.log(end.again ? "the server stops; the run is queued again"
+                        : std::string("ended: ") + state_name(end.state) +
+                              (end.failure ? " " + end.failure->message : ""));
+  return end;
+}
+
+void Runner::record(const StoredRun& run, const End& end) {
+  for (;;) try {
+      if (end.again)
+        store_.requeue(run.id);
+      else
+        store_.finish(run.id, end.state, end.failure, collect_results(folder_.run(run.id)));
+      const char* status = end.again ? "queued" : state_name(end.state);
+      spdlog::info("run={} ended status={}{}", run.id, status,
+                   end.failure ? " code=" + end.failure->code : "");
+      return;
+    } catch (const std::exception& error) {  // a full disk: the end is recorded when there is room
+      spdlog::error("run={} its end cannot be recorded yet: {}", run.id, error.what());
+      if (stopping_) return;  // the next start finds it running and takes it up again
+      std::unique_lock lock(mutex_);
+      wake_.wait_for(lock, store_retry, [this] { return stopping_.load(); });
+    }
 }
 
 }  // namespace quicksand

@@ -1,5 +1,6 @@
 #pragma once
-// The queue's workers: each takes the oldest queued run, executes it in `<runs>/<id>` and records its end.
+// The queue's workers: each takes the run whose turn it is, executes it in `<runs>/<id>` and records its end.
+// One more thread watches what the runs take and removes old results.
 
 #include <atomic>
 #include <chrono>
@@ -12,19 +13,17 @@
 #include <vector>
 
 #include "server/change_bell.hpp"
+#include "server/metrics.hpp"
+#include "server/settings.hpp"
 #include "server/state_folder.hpp"
 #include "server/store.hpp"
 
 namespace quicksand {
 
-struct RunnerOptions {
-  int workers = 1;
-  int threads = 0;  ///< per run; 0: all cores
-};
-
 class Runner {
  public:
-  Runner(Store& store, const StateFolder& folder, ChangeBell& bell, const RunnerOptions& options);
+  Runner(Store& store, const StateFolder& folder, ChangeBell& bell, Metrics& metrics,
+         const Settings& settings);
   ~Runner();  ///< stops and waits for the workers
 
   /// Brings order into what a killed server left, then starts the workers. Call once.
@@ -42,21 +41,45 @@ class Runner {
 
  private:
   struct Active {
+    StoredRun run;
+    std::chrono::steady_clock::time_point begin = std::chrono::steady_clock::now();
     std::atomic<bool> cancel{false};
+    std::optional<Failure> limit;  ///< guarded by mutex_; why it is ended, when a limit asks for it
   };
+  struct End {
+    RunState state = RunState::failed;
+    std::optional<Failure> failure;
+    bool again = false;  ///< interrupted by a stop: to be queued again
+  };
+
+  // runner.cpp
+  void work(bool short_runs_only);
+  std::shared_ptr<Active> take_next(bool short_runs_only);
+  ClaimRules claim_rules(bool short_runs_only) const;
+  void execute_one(Active& active);
+  End compute(Active& active);
+  void record(const StoredRun& run, const End& end);
+
+  // runner_guard.cpp
   void recover();
-  void work();
-  bool take_next(StoredRun& run, std::shared_ptr<Active>& active);
-  void execute_one(const StoredRun& run, const std::atomic<bool>& cancel);
+  void plan_what_waits();
+  void guard();
+  void enforce_limits();
+  void expire_results();
+  void end_for(Active& active, const Failure& failure);
+  std::string disk_shortage_now();
+  bool has_room();
 
   Store& store_;
   const StateFolder& folder_;
   ChangeBell& bell_;
-  RunnerOptions options_;
+  Metrics& metrics_;
+  const Settings& settings_;
   std::mutex mutex_;  ///< guards active_, running_workers_ and the order of claim and cancel
   std::condition_variable wake_, stopped_;
   std::map<std::string, std::shared_ptr<Active>> active_;
   int running_workers_ = 0;
+  bool waits_for_room_ = false;
   std::atomic<bool> stopping_{false};
   std::vector<std::thread> workers_;
 };

@@ -12,7 +12,9 @@
 #include <stdexcept>
 #include <thread>
 
+#include "server/files.hpp"
 #include "server/http_server.hpp"
+#include "server/inherited_socket.hpp"
 #include "server/store.hpp"
 
 namespace quicksand {
@@ -23,10 +25,12 @@ namespace {
 constexpr std::chrono::milliseconds worker_patience{6000}, connection_patience{3000};
 
 /// Without keys anybody who reaches the port could run and read everything.
-void require_loopback(const std::string& host) {
-  if (host != "127.0.0.1" && host != "::1" && host != "localhost")
+void require_keys_or_loopback(KeyStore& keys, const std::string& host) {
+  if (!is_loopback(host) && !keys.any())
     throw std::runtime_error(
-        "--host " + host + " refused: without API keys the server listens on this machine only (127.0.0.1)");
+        "host = " + host +
+        " refused: without API keys the server listens on this machine only (127.0.0.1); "
+        "make one with quicksand keys create");
 }
 
 sigset_t stop_signals() {
@@ -44,22 +48,35 @@ sigset_t stop_signals() {
   ::_exit(0);
 }
 
+/// The URL of a socket that now listens: the service manager's, or one bound here.
+std::string listen(HttpServer& http, const Settings& settings,
+                   const std::optional<InheritedSocket>& inherited) {
+  if (inherited) http.adopt(inherited->descriptor);
+  const int port = inherited ? inherited->port : http.bind(settings.host, static_cast<int>(settings.port));
+  if (port == 0) return "http+unix://";
+  const bool six = settings.host.find(':') != std::string::npos;
+  return "http://" + (six ? "[" + settings.host + "]" : settings.host) + ":" + std::to_string(port);
+}
+
 }  // namespace
 
-void serve(const ServeOptions& options) {
-  require_loopback(options.host);
+void serve(Settings settings) {
+  const auto inherited = inherited_socket();
+  if (inherited) settings.host = inherited->host;
   const sigset_t signals = stop_signals();
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);  // inherited by every thread; one of them waits for them
 
-  StateFolder folder(options.state);
+  make_private();
+  StateFolder folder(settings.state);
   Store store(folder.database());
+  KeyStore keys(folder.database());
+  require_keys_or_loopback(keys, settings.host);
   ChangeBell bell;
-  Runner runner(store, folder, bell, options.runner);
-  Service service{store, runner, bell, folder, read_catalogue(options.cases), options.runner, {}};
+  Metrics metrics;
+  Runner runner(store, folder, bell, metrics, settings);
+  Service service{store, keys, runner, bell, folder, metrics, settings, read_catalogue(settings.cases)};
   HttpServer http(service);
-  const int port = http.bind(options.host, options.port);
-  const std::string host = options.host == "::1" ? "[::1]" : options.host;
-  const std::string url = "http://" + host + ":" + std::to_string(port);
+  const std::string url = listen(http, settings, inherited);
   runner.start();
   folder.announce(url);
   std::cout << "quicksand serves " << url << " state " << folder.path().string() << std::endl;

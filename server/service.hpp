@@ -9,33 +9,30 @@
 #include <string>
 #include <vector>
 
+#include "server/access.hpp"
 #include "server/catalogue.hpp"
 #include "server/change_bell.hpp"
+#include "server/keys.hpp"
+#include "server/metrics.hpp"
+#include "server/places.hpp"
 #include "server/runner.hpp"
+#include "server/settings.hpp"
 #include "server/state_folder.hpp"
 #include "server/store.hpp"
 
 namespace quicksand {
 
-/// Bounds of what one client can ask for; `/v1/service-info` tells them.
-struct Limits {
-  std::size_t max_body_bytes = 4 << 20;  ///< a case; larger ones get 413
-  int max_queued = 1000;                 ///< further runs get 503
-  int max_page = 200;                    ///< runs in one answer of the list
-  int max_wait_s = 30;                   ///< longest long poll
-  int max_waiters = 16;                  ///< long polls at a time; the next is answered at once
-};
-
 struct Service {
   Store& store;
+  KeyStore& keys;
   Runner& runner;
   ChangeBell& bell;
   const StateFolder& folder;
+  Metrics& metrics;
+  const Settings& settings;
   std::map<std::string, ShippedCase> cases;
-  RunnerOptions workers;
-  Limits limits;
   Milliseconds started = utc_now();
-  std::atomic<int> waiters{0};
+  Places waiters{settings.max_waiters}, streams{settings.max_streams}, readers{settings.max_readers};
   std::atomic<bool> stopping{false};
 };
 
@@ -43,6 +40,7 @@ struct Service {
 struct Call {
   const httplib::Request& request;
   std::vector<std::string> captured;  ///< what stood in place of the route's `{…}`
+  Caller caller;
 
   /// Query parameter; empty when absent.
   std::string parameter(const std::string& name) const { return request.get_param_value(name); }

@@ -48,6 +48,10 @@ StoredRun read_run(SQLite::Statement& row) {
         {row.getColumn(14).getDouble(), row.getColumn(15).getDouble(), row.getColumn(16).getDouble()}};
   run.retries = row.getColumn(17).getInt();
   run.revision = row.getColumn(18).getInt64();
+  run.owner = row.getColumn(19).getString();
+  run.priority = row.getColumn(20).getInt();
+  run.cost = {row.getColumn(21).getInt64(), row.getColumn(22).getDouble(), row.getColumn(23).getDouble()};
+  run.expired = optional_time(row.getColumn(24));
   return run;
 }
 

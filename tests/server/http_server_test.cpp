@@ -15,7 +15,7 @@ httplib::Request good_request() {
 }
 
 int status_of(const httplib::Request& request) {
-  const auto refused = screen_request(request, Limits{});
+  const auto refused = screen_request(request, Settings{});
   return refused ? refused->status : 0;
 }
 
@@ -45,10 +45,10 @@ TEST(ScreenRequest, RefusesOddFraming) {
 TEST(ScreenRequest, RefusesWhatIsTooLargeByOneByte) {
   auto request = good_request();
   request.headers.erase("Content-Length");
-  request.headers.emplace("Content-Length", std::to_string(Limits{}.max_body_bytes));
+  request.headers.emplace("Content-Length", std::to_string(Settings{}.max_body_bytes));
   EXPECT_EQ(status_of(request), 0);
   request.headers.erase("Content-Length");
-  request.headers.emplace("Content-Length", std::to_string(Limits{}.max_body_bytes + 1));
+  request.headers.emplace("Content-Length", std::to_string(Settings{}.max_body_bytes + 1));
   EXPECT_EQ(status_of(request), 413);
 }
 

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "api/openapi.hpp"
+
 namespace quicksand {
 namespace {
 
@@ -28,6 +30,12 @@ TEST(FindRoute, UnknownPathsHaveNoMethods) {
     EXPECT_EQ(find_route("GET", path).route, nullptr) << path;
     EXPECT_EQ(find_route("GET", path).allow, "") << path;
   }
+}
+
+TEST(RouteTable, IsWhatTheDocumentDescribes) {
+  const std::string document = openapi_document();
+  for (const Route& route : route_table())
+    EXPECT_NE(document.find(std::string("\n  ") + route.pattern + ":\n"), std::string::npos) << route.pattern;
 }
 
 }  // namespace

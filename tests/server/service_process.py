@@ -1,5 +1,6 @@
 """A quicksand server process and plain HTTP towards it, for the tests of the service."""
 
+import contextlib
 import http.client
 import json
 import os
@@ -27,9 +28,10 @@ class ServiceProcess:
         self.executable, self.state, self.options = executable, state, list(options)
         self.process = None
         self.url = None
+        self.log_folder = os.path.dirname(state)
 
     def start(self):
-        log = open(os.path.join(os.path.dirname(self.state), "server.log"), "a")
+        log = open(os.path.join(self.log_folder, "server.log"), "a")
         self.process = subprocess.Popen(
             [self.executable, "serve", "--port", "auto", "--state", self.state, *self.options],
             stdout=subprocess.PIPE, stderr=log, text=True)
@@ -70,6 +72,18 @@ class ServiceProcess:
 
     def get(self, path, **headers):
         return self.call("GET", path, headers={k.replace("_", "-"): v for k, v in headers.items()})
+
+    @contextlib.contextmanager
+    def open(self, path, headers=None, timeout=60):
+        """The response as a stream; closed at the end of the block, read or not."""
+        connection = http.client.HTTPConnection(self.address.hostname, self.address.port, timeout=timeout)
+        connection.request("GET", path, headers=headers or {})
+        response = connection.getresponse()
+        try:
+            yield response
+        finally:
+            response.close()
+            connection.close()
 
     def raw(self, request, timeout=20):
         """Sends bytes as they are; the whole answer as (status, header text, body), status 0 for none."""

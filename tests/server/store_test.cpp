@@ -10,12 +10,12 @@
 namespace quicksand {
 namespace {
 
-constexpr int roomy = 1000;
+constexpr QueueLimits roomy{1000, 1000};
 
 class StoreTest : public testing::Test {
  protected:
   NewRun new_run(const std::string& text, const std::string& key = "", const std::string& label = "") {
-    return {text, "name of " + text, label, "0.1.0", key};
+    return {text, "name of " + text, label, "0.1.0", key, "", 0, {10, 1e6, 5}};
   }
   std::string queue(const std::string& text) { return store_.create(new_run(text), roomy).run->id; }
   RunState state(const std::string& id) { return store_.find(id)->state; }
@@ -126,7 +126,7 @@ TEST_F(StoreTest, KeysAreForgottenAfterADay) {
 
 TEST_F(StoreTest, AFullQueueRefuses) {
   queue("a");
-  EXPECT_EQ(store_.create(new_run("b"), 1).kind, CreateOutcome::Kind::full);
+  EXPECT_EQ(store_.create(new_run("b"), {1, 1000}).kind, CreateOutcome::Kind::full);
   EXPECT_EQ(store_.count(RunState::queued), 1);
 }
 
@@ -210,6 +210,96 @@ TEST_F(StoreTest, RefusesTheFileOfANewerVersion) {
   EXPECT_THROW(Store{file_}, std::runtime_error);
 }
 
+TEST_F(StoreTest, HigherPrioritiesGoFirst) {
+  const std::string plain = queue("a");
+  NewRun urgent = new_run("b"), idle = new_run("c");
+  urgent.priority = 1;
+  idle.priority = -1;
+  const std::string low = store_.create(idle, roomy).run->id, high = store_.create(urgent, roomy).run->id;
+  EXPECT_EQ(store_.claim_next()->id, high);
+  EXPECT_EQ(store_.claim_next()->id, plain);
+  EXPECT_EQ(store_.claim_next()->id, low);
+}
+
+TEST_F(StoreTest, OwnersTakeTurns) {
+  const auto queue_for = [&](const std::string& owner) {
+    NewRun run = new_run(owner);
+    run.owner = owner;
+    return store_.create(run, roomy).run->id;
+  };
+  std::vector<std::string> order;
+  for (int i = 0; i < 3; ++i) queue_for("anna");
+  queue_for("ben");
+  queue_for("ben");
+  for (int i = 0; i < 5; ++i) {
+    now_ += 1000;
+    order.push_back(store_.claim_next()->owner);
+  }
+  EXPECT_EQ(order, (std::vector<std::string>{"anna", "ben", "anna", "ben", "anna"}));
+}
+
+TEST_F(StoreTest, AWorkerForShortRunsLeavesLongOnes) {
+  NewRun run = new_run("a");
+  run.cost.seconds = 100;
+  const std::string slow = store_.create(run, roomy).run->id;
+  ClaimRules only_short;
+  only_short.longest_s = 99;
+  EXPECT_FALSE(store_.claim_next(only_short));
+  const std::string quick = queue("b");
+  EXPECT_EQ(store_.claim_next(only_short)->id, quick);
+  EXPECT_EQ(store_.claim_next()->id, slow);
+}
+
+TEST_F(StoreTest, WhoDoesNotFitIsNotOvertaken) {
+  NewRun run = new_run("a");
+  run.cost.memory_bytes = 3e6;
+  const std::string large = store_.create(run, roomy).run->id;
+  queue("b");
+  EXPECT_FALSE(store_.claim_next({2e6}));
+  EXPECT_EQ(store_.claim_next({3e6})->id, large);
+}
+
+TEST_F(StoreTest, AnOwnerHasOnlySoManyActiveRuns) {
+  NewRun run = new_run("a");
+  run.owner = "anna";
+  const std::string id = store_.create(run, {1000, 1}).run->id;
+  EXPECT_EQ(store_.create(run, {1000, 1}).kind, CreateOutcome::Kind::over_quota);
+  store_.claim_next();
+  EXPECT_EQ(store_.create(run, {1000, 1}).kind, CreateOutcome::Kind::over_quota);
+  run.owner = "ben";
+  EXPECT_EQ(store_.create(run, {1000, 1}).kind, CreateOutcome::Kind::created);
+  store_.finish(id, RunState::succeeded, {}, {});
+  run.owner = "anna";
+  EXPECT_EQ(store_.create(run, {1000, 1}).kind, CreateOutcome::Kind::created);
+}
+
+TEST_F(StoreTest, IdempotencyKeysAreOnesOwn) {
+  NewRun run = new_run("a", "key");
+  run.owner = "anna";
+  const std::string hers = store_.create(run, roomy).run->id;
+  run.owner = "ben";
+  const auto his = store_.create(run, roomy);
+  EXPECT_EQ(his.kind, CreateOutcome::Kind::created);
+  EXPECT_NE(his.run->id, hers);
+}
+
+TEST_F(StoreTest, OldResultsExpireAndTheRecordSaysSo) {
+  const std::string old = queue("a"), active = queue("b");
+  store_.claim_next();
+  store_.finish(old, RunState::succeeded, {}, {{"run.json", 7, "ab"}});
+  EXPECT_EQ(store_.results_bytes(), 7);
+  EXPECT_TRUE(store_.expire(now_).empty());
+  now_ += 1000;
+  EXPECT_EQ(store_.expire(now_), std::vector<std::string>{old});
+  EXPECT_TRUE(store_.expire(now_).empty());
+  EXPECT_EQ(store_.find(old)->expired, now_);
+  EXPECT_EQ(store_.find(old)->state, RunState::succeeded);
+  EXPECT_TRUE(store_.results(old).empty());
+  EXPECT_EQ(store_.results_bytes(), 0);
+  EXPECT_EQ(store_.expired(), std::vector<std::string>{old});
+  EXPECT_FALSE(store_.find(active)->expired);
+}
+
 TEST_F(StoreTest, ManyThreadsLoseNothing) {
   constexpr int threads = 4, each = 25;
   std::vector<std::thread> writers;
@@ -231,7 +321,10 @@ TEST(ClockTest, WritesAndReadsRfc3339) {
   EXPECT_EQ(rfc3339(1'700'000'000'042), "2023-11-14T22:13:20.042Z");
   EXPECT_EQ(parse_rfc3339("2023-11-14T22:13:20.042Z"), 1'700'000'000'042);
   EXPECT_EQ(parse_rfc3339("2023-11-14T22:13:20Z"), 1'700'000'000'000);
-  for (const char* wrong : {"", "2023-11-14", "2023-11-14T22:13:20", "2023-11-14T22:13:20Zx", "yesterday"})
+  for (const std::string& wrong :
+       {std::string(), std::string("2023-11-14"), std::string("2023-11-14T22:13:20"),
+        std::string("2023-11-14T22:13:20Zx"), std::string("2023-11-14T22:13:20Z\0", 21),
+        std::string("1969-12-31T23:59:59Z"), std::string("yesterday")})
     EXPECT_FALSE(parse_rfc3339(wrong)) << wrong;
 }
 

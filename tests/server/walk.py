@@ -11,75 +11,15 @@ import re
 import shutil
 import socket
 import subprocess
-import sys
 import tempfile
 import threading
 import time
-import unittest
 
 import h5py
 import numpy
 
+from server_test import EXECUTABLE, RESULT_NAMES, SMALL_CASE, ServerTest, endless_case, main, quicksand, small_case
 from service_process import ServiceProcess
-
-EXECUTABLE = SMALL_CASE = None  # set at the bottom from the command line
-RESULT_NAMES = ["result.vtkhdf", "result.xdmf", "run.json"]
-
-
-def small_case():
-    with open(SMALL_CASE) as file:
-        return json.load(file)
-
-
-def endless_case():
-    """Computes for as long as a test may need."""
-    case = small_case()
-    case["stages"][0]["duration"] = 1000
-    case["output"]["frame_interval"] = 0.05
-    case["numerics"] = {"time_step": 1e-4}
-    return case
-
-
-def quicksand(*arguments, **options):
-    return subprocess.run([EXECUTABLE, *arguments], capture_output=True, text=True, timeout=120, **options)
-
-
-class ServerTest(unittest.TestCase):
-    """One server for all tests of a class."""
-
-    options = ()
-
-    @classmethod
-    def setUpClass(cls):
-        cls.folder = tempfile.mkdtemp(prefix="quicksand-walk-")
-        cls.state = os.path.join(cls.folder, "state")
-        cls.server = ServiceProcess(EXECUTABLE, cls.state, cls.options).start()
-
-    @classmethod
-    def tearDownClass(cls):
-        if cls.server.process.poll() is None:
-            cls.server.kill()
-        shutil.rmtree(cls.folder)
-
-    def submit(self, case, path="/v1/runs", **headers):
-        answer = self.server.call("POST", path, case, headers)
-        self.assertEqual(answer.status, 201, answer.body)
-        return answer.json()["id"]
-
-    def finished(self, case):
-        run_id = self.submit(case)
-        run = self.server.wait_for(run_id, "succeeded", "failed", "canceled")
-        self.assertEqual(run["status"], "succeeded", run["failure"])
-        return run_id
-
-    def cancel(self, run_id):
-        self.assertEqual(self.server.call("POST", f"/v1/runs/{run_id}/cancel").status, 200)
-        return self.server.wait_for(run_id, "canceled")
-
-    def assert_problem(self, answer, status):
-        self.assertEqual(answer.status, status, answer.body)
-        self.assertEqual(answer.headers["Content-Type"], "application/problem+json")
-        self.assertEqual(answer.json()["status"], status)
 
 
 class WalkTest(ServerTest):
@@ -224,6 +164,8 @@ class WalkTest(ServerTest):
 class ActiveRunTest(ServerTest):
     """What can be done while a run computes. One worker: what is submitted second waits."""
 
+    options = ("--workers", "1")
+
     def test_cancel_within_a_second(self):
         run_id = self.submit(endless_case())
         self.server.wait_for(run_id, "running")
@@ -321,7 +263,7 @@ class DownloadTest(ServerTest):
 
     def ask(self, *headers, method="GET"):
         lines = "".join(f"{header}\r\n" for header in headers)
-        return self.server.raw(f"{method} {self.result['href']} HTTP/1.1\r\nHost: x\r\n{lines}\r\n".encode())
+        return self.server.raw(f"{method} {self.result['href']} HTTP/1.1\r\nHost: localhost\r\n{lines}\r\n".encode())
 
     def test_whole_and_head(self):
         status, head, body = self.ask()
@@ -340,6 +282,17 @@ class DownloadTest(ServerTest):
             self.assertEqual((status, body), (206, self.body[first:last + 1]), text)
             self.assertIn(f"Content-Range: bytes {first}-{last}/{size}", head)
             self.assertIn(f"Content-Length: {last - first + 1}", head)
+
+    def test_curl_continues_what_broke_off(self):
+        path = os.path.join(self.folder, "curled.vtkhdf")
+        for have in (0, 1000, len(self.body) - 1):
+            with open(path, "wb") as file:
+                file.write(self.body[:have])
+            curl = subprocess.run(["curl", "-fsS", "-C", "-", "-o", path, self.server.url + self.result["href"]],
+                                  capture_output=True, text=True)
+            self.assertEqual(curl.returncode, 0, curl.stderr)
+            with open(path, "rb") as file:
+                self.assertEqual(file.read(), self.body)
 
     def test_several_ranges_give_the_whole(self):
         status, _, body = self.ask("Range: bytes=0-1,5-6")
@@ -385,7 +338,7 @@ class HardeningTest(ServerTest):
         self.assertEqual(self.server.get("/v1/runs").json()["runs"], [])
 
     def post(self, headers, body=b""):
-        return self.server.raw(b"POST /v1/runs HTTP/1.1\r\nHost: x\r\n" + headers + b"\r\n\r\n" + body)
+        return self.server.raw(b"POST /v1/runs HTTP/1.1\r\nHost: localhost\r\n" + headers + b"\r\n\r\n" + body)
 
     def assert_refused(self, answer, *allowed):
         status, head, body = answer
@@ -416,21 +369,45 @@ class HardeningTest(ServerTest):
 
     def test_expect_continue(self):
         with socket.create_connection((self.server.address.hostname, self.server.address.port), timeout=10) as sock:
-            sock.sendall(b"POST /v1/validate HTTP/1.1\r\nHost: x\r\nContent-Type: application/json\r\n"
+            sock.sendall(b"POST /v1/validate HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\n"
                          b"Content-Length: 2\r\nExpect: 100-continue\r\n\r\n")
             self.assertTrue(sock.recv(1000).startswith(b"HTTP/1.1 100 "))
             sock.sendall(b"{}")
             self.assertTrue(sock.recv(10000).startswith(b"HTTP/1.1 422 "))
 
     def test_headers_and_paths(self):
-        self.assert_refused(self.server.raw(b"GET /healthz HTTP/1.1\r\nA: " + b"x" * (1 << 20) + b"\r\n\r\n"), 400, 431)
+        self.assert_refused(self.server.raw(b"GET /healthz HTTP/1.1\r\nHost: localhost\r\nA: " + b"x" * (1 << 20) + b"\r\n\r\n"), 400, 431)
         self.assert_refused(self.server.raw(b"GET /" + b"x" * 9000 + b" HTTP/1.1\r\n\r\n"), 414)
         self.assert_refused(self.server.raw(b"nonsense\r\n\r\n"), 400)
-        self.assert_refused(self.server.raw(b"GET /" + b"x" * 8000 + b" HTTP/1.1\r\n\r\n"), 404)
+        self.assert_refused(self.server.raw(b"GET /" + b"x" * 8000 + b" HTTP/1.1\r\nHost: localhost\r\n\r\n"), 404)
         ranges = b"0-0," * 2000
-        self.assertIn(self.server.raw(b"GET /healthz HTTP/1.1\r\nRange: bytes=" + ranges + b"0-0\r\n\r\n")[0], (200, 416))
-        self.assertIn(self.server.raw(b"GET /healthz HTTP/1.1\r\nRange: bytes=9-1\r\n\r\n")[0], (200, 416))
-        self.assert_refused(self.server.raw(b"POST /" + b"x" * 8000 + b" HTTP/1.1\r\nContent-Length: 1\r\n\r\nx"), 404)
+        self.assertIn(self.server.raw(b"GET /healthz HTTP/1.1\r\nHost: localhost\r\nRange: bytes=" + ranges + b"0-0\r\n\r\n")[0], (200, 416))
+        self.assertIn(self.server.raw(b"GET /healthz HTTP/1.1\r\nHost: localhost\r\nRange: bytes=9-1\r\n\r\n")[0], (200, 416))
+        self.assert_refused(self.server.raw(b"POST /" + b"x" * 8000 + b" HTTP/1.1\r\nHost: localhost\r\nContent-Length: 1\r\n\r\nx"), 404)
+
+    def test_host(self):
+        self.assert_refused(self.server.raw(b"GET /v1/runs HTTP/1.1\r\n\r\n"), 400)
+        self.assert_refused(self.server.raw(b"GET /v1/runs HTTP/1.1\r\nHost: localhost\r\nHost: b\r\n\r\n"), 400)
+        for host in ("127.0.0.1", "localhost:8080", "[::1]:8080"):
+            self.assertEqual(self.server.get("/v1/runs", Host=host).status, 200, host)
+        for host in ("lab.example", "127.0.0.1.lab.example", "localhost.lab.example:80", "[::2]", "["):
+            self.assert_problem(self.server.get("/v1/runs", Host=host), 421)
+
+    def test_a_path_cannot_write_a_line_of_the_log(self):
+        self.assert_problem(self.server.get("/a%0A2026-01-01T00:00:00.000Z%20info%20run=forged"), 404)
+        with open(os.path.join(self.folder, "server.log")) as file:
+            log = file.read()
+        self.assertIn("run=forged", log)
+        self.assertFalse([line for line in log.splitlines() if line.startswith("2026-01-01T00:00:00")])
+
+    def test_security_headers_on_every_answer(self):
+        for path, status in (("/healthz", 200), ("/v1/runs", 200), ("/none", 404), ("/v1/runs?x=1", 400)):
+            headers = self.server.get(path).headers
+            self.assertEqual(headers["X-Content-Type-Options"], "nosniff")
+            self.assertIn("default-src 'none'", headers["Content-Security-Policy"])
+            self.assertEqual(headers["Cross-Origin-Resource-Policy"], "same-origin")
+            self.assertIsNone(headers["Access-Control-Allow-Origin"])
+            self.assertIsNone(headers["Server"])
 
     def test_wrong_method(self):
         for method, path, allow in (("PUT", "/v1/runs", "GET, HEAD, POST"), ("DELETE", "/healthz", "GET, HEAD"),
@@ -442,7 +419,7 @@ class HardeningTest(ServerTest):
 
     def test_a_post_without_body_does_not_wait_for_one(self):
         begin = time.monotonic()
-        status, _, _ = self.server.raw(b"POST /v1/runs/00/cancel HTTP/1.1\r\nHost: x\r\n\r\n")
+        status, _, _ = self.server.raw(b"POST /v1/runs/00/cancel HTTP/1.1\r\nHost: localhost\r\n\r\n")
         self.assertEqual(status, 404)
         self.assertLess(time.monotonic() - begin, 2)
 
@@ -450,7 +427,7 @@ class HardeningTest(ServerTest):
         address = (self.server.address.hostname, self.server.address.port)
         idle = [socket.create_connection(address) for _ in range(20)]
         for sock in idle[:10]:
-            sock.sendall(b"GET /healthz HTTP/1.1\r\nHost: x")
+            sock.sendall(b"GET /healthz HTTP/1.1\r\nHost: localhost")
         self.tearDown()
         for sock in idle:
             sock.close()
@@ -476,7 +453,7 @@ class RestartTest(ServerTest):
     def setUp(self):
         self.state = os.path.join(self.folder, self.id().split(".")[-1], "state")
         os.makedirs(self.state)
-        self.server = ServiceProcess(EXECUTABLE, self.state).start()
+        self.server = ServiceProcess(EXECUTABLE, self.state, ["--workers", "1"]).start()
 
     def tearDown(self):
         if self.server.process.poll() is None:
@@ -544,8 +521,9 @@ class RestartTest(ServerTest):
         self.server.wait_for(run_id, "running")
         poll = threading.Thread(target=self.server.get, args=[f"/v1/runs/{run_id}"], kwargs={"Prefer": "wait=30"})
         poll.start()
-        time.sleep(0.3)
-        self.assertLess(self.server.stop(), 10)
+        with self.server.open(f"/v1/runs/{run_id}/events"):
+            time.sleep(0.3)
+            self.assertLess(self.server.stop(), 10)
         poll.join()
         self.assertFalse(os.path.exists(os.path.join(self.state, "server.json")))
         self.server.start()
@@ -688,8 +666,14 @@ class CommandLineTest(ServerTest):
         self.assertIn("running", self.client("status", run_id).stdout)
         self.assertIn(run_id, self.client("status").stdout)
         self.assertEqual(self.client("fetch", run_id, "--out", self.folder).returncode, 1)
+        self.assertEqual(self.client("delete", run_id).returncode, 1)  # it has not ended
         self.assertEqual(self.client("cancel", run_id).returncode, 0)
         self.server.wait_for(run_id, "canceled")
+        log = self.client("log", run_id)
+        self.assertEqual(log.returncode, 0)
+        self.assertIn("ended: canceled", log.stdout)
+        self.assertEqual(self.client("delete", run_id).returncode, 0)
+        self.assertEqual(self.client("log", run_id).returncode, 1)
 
     def test_submit_tells_what_is_wrong(self):
         bad = self.client("submit", self.bad_case())
@@ -708,5 +692,4 @@ class CommandLineTest(ServerTest):
 
 
 if __name__ == "__main__":
-    EXECUTABLE, SMALL_CASE = sys.argv[1:3]
-    unittest.main(argv=[sys.argv[0], *sys.argv[3:]], verbosity=2)
+    main()

@@ -1,0 +1,25 @@
+# The Debian package: `cpack -G DEB` in a build folder (deploy/build-package does it all).
+set(deploy ${CMAKE_SOURCE_DIR}/deploy)
+install(FILES ${deploy}/quicksand.conf DESTINATION /etc/quicksand)
+install(FILES ${deploy}/quicksand.service ${deploy}/quicksand.socket DESTINATION /lib/systemd/system)
+install(FILES ${deploy}/README.md ${deploy}/nginx.conf ${CMAKE_SOURCE_DIR}/LICENSE DESTINATION share/doc/quicksand)
+install(DIRECTORY ${CMAKE_SOURCE_DIR}/cases DESTINATION share/quicksand)
+install(FILES ${CMAKE_SOURCE_DIR}/api/openapi.yaml ${CMAKE_SOURCE_DIR}/api/case.schema.json ${CMAKE_SOURCE_DIR}/api/case.md
+  DESTINATION share/quicksand/api)
+
+set(CPACK_PACKAGE_NAME quicksand)
+set(CPACK_PACKAGE_VENDOR quicksand)
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "Simulation of saturated ground and free water as a service")
+set(CPACK_PACKAGE_DESCRIPTION "Two-phase material point simulation of soil and water: command line, HTTP service and cases.")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_MAINTAINER "quicksand maintainers <quicksand@localhost>")
+set(CPACK_DEBIAN_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_DEPENDS adduser)
+set(CPACK_DEBIAN_PACKAGE_SUGGESTS "nginx, paraview, python3-h5py")
+set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
+set(CPACK_DEBIAN_PACKAGE_CONTROL_EXTRA ${deploy}/debian/postinst ${deploy}/debian/prerm ${deploy}/debian/postrm
+  ${deploy}/debian/conffiles)
+include(CPack)

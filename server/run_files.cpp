@@ -1,0 +1,32 @@
+#include "server/run_files.hpp"
+
+#include <array>
+
+#include "server/sha256.hpp"
+
+namespace quicksand {
+namespace {
+
+/// The files of a complete run; `.part` beside them is what a killed server left.
+constexpr std::array<const char*, 3> result_names{"result.vtkhdf", "result.xdmf", "run.json"};
+
+}  // namespace
+
+void remove_results(const std::filesystem::path& run_folder) {
+  for (const char* name : result_names) {
+    std::filesystem::remove(run_folder / name);
+    std::filesystem::remove(run_folder / (std::string(name) + ".part"));
+  }
+}
+
+std::vector<StoredResult> collect_results(const std::filesystem::path& run_folder) {
+  std::vector<StoredResult> results;
+  for (const char* name : result_names) {
+    const auto file = run_folder / name;
+    if (std::filesystem::is_regular_file(file))
+      results.push_back({name, std::filesystem::file_size(file), sha256_file(file)});
+  }
+  return results;
+}
+
+}  // namespace quicksand

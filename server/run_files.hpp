@@ -1,0 +1,15 @@
+#pragma once
+#include <filesystem>
+#include <vector>
+
+#include "server/store.hpp"
+
+namespace quicksand {
+
+/// Removes a run's results, complete or `.part`; its log stays. Throws std::filesystem::filesystem_error.
+void remove_results(const std::filesystem::path& run_folder);
+
+/// The complete results in the folder, with their sums. Throws std::runtime_error when one cannot be read.
+std::vector<StoredResult> collect_results(const std::filesystem::path& run_folder);
+
+}  // namespace quicksand

@@ -1,0 +1,111 @@
+// What happens beside the workers: order after a kill, limits of what computes, results that have their time.
+
+#include <spdlog/spdlog.h>
+
+#include "api/case_json.hpp"
+#include "server/limits.hpp"
+#include "server/machine.hpp"
+#include "server/run_files.hpp"
+#include "server/runner.hpp"
+
+namespace quicksand {
+namespace {
+
+/// Between two looks at what the runs take.
+constexpr std::chrono::seconds guard_interval{1};
+constexpr Milliseconds day_ms = 24LL * 3600 * 1000;
+
+}  // namespace
+
+void Runner::recover() {
+  const Recovery recovery = store_.recover();
+  for (const auto& id : recovery.requeued)
+    spdlog::warn("run={} interrupted, queued again from its start", id);
+  for (const auto& id : recovery.interrupted) spdlog::error("run={} interrupted twice, failed", id);
+  for (const auto& id : recovery.canceled) spdlog::info("run={} canceled", id);
+  // Folders whose record is gone: the server died between deleting the record and its files.
+  for (const auto& entry : std::filesystem::directory_iterator(folder_.runs()))
+    if (!store_.find(entry.path().filename().string())) std::filesystem::remove_all(entry.path());
+  for (const auto& id : store_.expired()) remove_results(folder_.run(id));  // or expiring them
+  plan_what_waits();
+}
+
+/// Runs of an earlier version have no plan yet, and limits may have become smaller since they were submitted.
+void Runner::plan_what_waits() {
+  for (StoredRun& run : store_.queued()) {
+    if (run.cost.points == 0) {
+      const ParsedCase parsed = parse_case(store_.case_text(run.id).value_or(""));
+      if (parsed.scene) run.cost = cost_of(make_plan(*parsed.scene));
+      store_.set_cost(run.id, run.cost);
+    }
+    if (const auto faults = too_large(settings_, run.cost); !faults.empty()) {
+      store_.finish(run.id, RunState::failed, Failure{"too_large", faults.front().detail, 0, {}}, {});
+      spdlog::warn("run={} failed: {}", run.id, faults.front().detail);
+    }
+  }
+}
+
+void Runner::guard() {
+  std::unique_lock lock(mutex_);
+  while (!stopping_) {
+    try {
+      enforce_limits();
+      expire_results();
+    } catch (const std::exception& error) {
+      spdlog::error("guard: {}", error.what());
+    }
+    wake_.wait_for(lock, guard_interval);
+  }
+}
+
+std::string Runner::disk_shortage_now() {
+  double bytes = store_.results_bytes();
+  for (const auto& [id, active] : active_) bytes += folder_bytes(folder_.run(id));
+  return disk_shortage(settings_, folder_, bytes);
+}
+
+/// Whether the queue may go on; the log tells when that changes. mutex_ is held.
+bool Runner::has_room() {
+  const std::string shortage = disk_shortage_now();
+  if (shortage.empty() == waits_for_room_) {
+    waits_for_room_ = !shortage.empty();
+    spdlog::warn("the queue {}{}", waits_for_room_ ? "waits: " : "goes on", shortage);
+  }
+  return !waits_for_room_;
+}
+
+/// The run ends within one step, failed. mutex_ is held.
+void Runner::end_for(Active& active, const Failure& failure) {
+  if (active.limit || active.cancel) return;
+  spdlog::warn("run={} is ended: {}", active.run.id, failure.message);
+  active.limit = failure;
+  active.cancel = true;
+}
+
+/// mutex_ is held.
+void Runner::enforce_limits() {
+  if (active_.empty()) return;
+  const auto now = std::chrono::steady_clock::now();
+  for (const auto& [id, active] : active_)
+    if (const auto failure = out_of_time(settings_, now - active->begin)) end_for(*active, *failure);
+  if (const std::string shortage = disk_shortage_now(); !shortage.empty())
+    for (const auto& [id, active] : active_) end_for(*active, {"disk_full", shortage, 0, {}});
+  if (const auto failure = out_of_memory(settings_, resident_memory())) {  // the newest made it too much
+    const auto newest = std::max_element(active_.begin(), active_.end(), [](const auto& a, const auto& b) {
+      return a.second->begin < b.second->begin;
+    });
+    end_for(*newest->second, *failure);
+  }
+}
+
+/// The record first: files without a record of their own are removed at the next start.
+void Runner::expire_results() {
+  if (settings_.keep_days == 0) return;
+  for (const std::string& id : store_.expire(utc_now() - settings_.keep_days * day_ms)) {
+    remove_results(folder_.run(id));
+    spdlog::info("run={} results removed after {} days (keep_days)", id, settings_.keep_days);
+    bell_.ring();
+  }
+}
+
+}  // namespace quicksand

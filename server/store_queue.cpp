@@ -1,0 +1,157 @@
+// The way of a run from queued to its end.
+
+#include <SQLiteCpp/Statement.h>
+#include <SQLiteCpp/Transaction.h>
+
+#include "server/store.hpp"
+#include "server/store_rows.hpp"
+
+namespace quicksand {
+namespace {
+
+void set_failure(SQLite::Database& database, const std::string& id, const Failure& failure) {
+  SQLite::Statement set(database,
+                        "UPDATE runs SET failure_code = ?, failure_message = ?, failure_time = ?, "
+                        "failure_x = ?, failure_y = ?, failure_z = ? WHERE id = ?");
+  set.bind(1, failure.code);
+  set.bind(2, failure.message);
+  set.bind(3, failure.time);
+  for (int i = 0; i < 3; ++i) set.bind(4 + i, failure.place[i]);
+  set.bind(7, id);
+  set.exec();
+}
+
+/// Moves a run to an end state and stamps it.
+void set_ended(SQLite::Database& database, const std::string& id, RunState end, Milliseconds now) {
+  SQLite::Statement set(database,
+                        "UPDATE runs SET state = ?, finished = ?, revision = revision + 1 WHERE id = ?");
+  set.bind(1, state_name(end));
+  set.bind(2, static_cast<int64_t>(now));
+  set.bind(3, id);
+  set.exec();
+}
+
+void set_queued_again(SQLite::Database& database, const std::string& id, int more_retries) {
+  SQLite::Statement set(database,
+                        "UPDATE runs SET state = 'queued', started = NULL, progress = '', retries = retries "
+                        "+ ?, revision = revision + 1 WHERE id = ?");
+  set.bind(1, more_retries);
+  set.bind(2, id);
+  set.exec();
+}
+
+}  // namespace
+
+std::optional<StoredRun> Store::claim_next(const ClaimRules& rules) {
+  const std::lock_guard lock(mutex_);
+  SQLite::Transaction transaction(state_, SQLite::TransactionBehavior::IMMEDIATE);
+  SQLite::Statement next(state_,
+                         "SELECT id, memory_bytes FROM runs WHERE state = 'queued' AND estimated_s <= ? "
+                         "ORDER BY priority DESC, (SELECT MAX(started) FROM runs AS own WHERE own.owner = "
+                         "runs.owner), sequence LIMIT 1");
+  next.bind(1, rules.longest_s);
+  if (!next.executeStep() || next.getColumn(1).getDouble() > rules.free_memory) return {};
+  const std::string id = next.getColumn(0).getString();
+  SQLite::Statement set(
+      state_, "UPDATE runs SET state = 'running', started = ?, revision = revision + 1 WHERE id = ?");
+  set.bind(1, static_cast<int64_t>(clock_()));
+  set.bind(2, id);
+  set.exec();
+  next.reset();
+  transaction.commit();
+  return find_run(state_, id);
+}
+
+std::optional<StoredRun> Store::request_cancel(const std::string& id) {
+  const std::lock_guard lock(mutex_);
+  SQLite::Transaction transaction(state_, SQLite::TransactionBehavior::IMMEDIATE);
+  const auto run = find_run(state_, id);
+  if (!run) return {};
+  if (run->state == RunState::queued) set_ended(state_, id, RunState::canceled, clock_());
+  if (run->state == RunState::running) {
+    SQLite::Statement set(state_,
+                          "UPDATE runs SET state = 'canceling', revision = revision + 1 WHERE id = ?");
+    set.bind(1, id);
+    set.exec();
+  }
+  transaction.commit();
+  return find_run(state_, id);
+}
+
+void Store::set_progress(const std::string& id, const std::string& json) {
+  const std::lock_guard lock(progress_mutex_);
+  SQLite::Statement set(progress_,
+                        "UPDATE runs SET progress = ?, revision = revision + 1 WHERE id = ? AND state IN "
+                        "('running', 'canceling')");
+  set.bind(1, json);
+  set.bind(2, id);
+  set.exec();
+}
+
+void Store::finish(const std::string& id, RunState end, const std::optional<Failure>& failure,
+                   const std::vector<StoredResult>& results) {
+  const std::lock_guard lock(mutex_);
+  SQLite::Transaction transaction(state_, SQLite::TransactionBehavior::IMMEDIATE);
+  set_ended(state_, id, end, clock_());
+  if (failure) set_failure(state_, id, *failure);
+  for (const StoredResult& result : results) {
+    SQLite::Statement insert(state_, "INSERT OR REPLACE INTO results VALUES (?, ?, ?, ?)");
+    insert.bind(1, id);
+    insert.bind(2, result.name);
+    insert.bind(3, static_cast<int64_t>(result.bytes));
+    insert.bind(4, result.sha256);
+    insert.exec();
+  }
+  transaction.commit();
+}
+
+void Store::requeue(const std::string& id) {
+  const std::lock_guard lock(mutex_);
+  SQLite::Transaction transaction(state_, SQLite::TransactionBehavior::IMMEDIATE);
+  const auto run = find_run(state_, id);
+  if (run && run->state == RunState::running) set_queued_again(state_, id, 0);
+  transaction.commit();
+}
+
+Recovery Store::recover() {
+  const std::lock_guard lock(mutex_);
+  Recovery recovery;
+  SQLite::Transaction transaction(state_, SQLite::TransactionBehavior::IMMEDIATE);
+  for (const StoredRun& run : runs_in(state_, RunState::canceling)) {
+    set_ended(state_, run.id, RunState::canceled, clock_());
+    recovery.canceled.push_back(run.id);
+  }
+  for (const StoredRun& run : runs_in(state_, RunState::running)) {
+    if (run.retries == 0) {
+      set_queued_again(state_, run.id, 1);
+      recovery.requeued.push_back(run.id);
+      continue;
+    }
+    set_failure(state_, run.id,
+                {"interrupted",
+                 "the server was killed twice while it computed this run; it is not tried a third time",
+                 0,
+                 {}});
+    set_ended(state_, run.id, RunState::failed, clock_());
+    recovery.interrupted.push_back(run.id);
+  }
+  transaction.commit();
+  return recovery;
+}
+
+std::vector<StoredRun> Store::queued() {
+  const std::lock_guard lock(mutex_);
+  return runs_in(state_, RunState::queued);
+}
+
+void Store::set_cost(const std::string& id, const RunCost& cost) {
+  const std::lock_guard lock(mutex_);
+  SQLite::Statement set(state_, "UPDATE runs SET points = ?, memory_bytes = ?, estimated_s = ? WHERE id = ?");
+  set.bind(1, cost.points);
+  set.bind(2, cost.memory_bytes);
+  set.bind(3, cost.seconds);
+  set.bind(4, id);
+  set.exec();
+}
+
+}  // namespace quicksand

@@ -1,0 +1,71 @@
+"""nginx with deploy/nginx.conf as it is shipped; only addresses, certificate and folders are replaced."""
+
+import os
+import signal
+import socket
+import ssl
+import subprocess
+import time
+
+SHIPPED = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../deploy/nginx.conf")
+
+
+def free_ports(count):
+    sockets = [socket.create_server(("127.0.0.1", 0)) for _ in range(count)]
+    ports = [sock.getsockname()[1] for sock in sockets]
+    for sock in sockets:
+        sock.close()
+    return ports
+
+
+class NginxProcess:
+    """In front of a service at `upstream`; `port` for TLS, `plain` without."""
+
+    def __init__(self, folder, upstream):
+        self.folder, self.upstream, self.process = folder, upstream, None
+        self.plain, self.port = free_ports(2)
+        os.makedirs(folder)
+
+    def start(self):
+        subprocess.run(["openssl", "req", "-x509", "-newkey", "rsa:2048", "-nodes", "-days", "2", "-subj", "/CN=lab.example",
+                        "-addext", "subjectAltName=DNS:lab.example", "-keyout", self.folder + "/key",
+                        "-out", self.folder + "/cert"], check=True, capture_output=True)
+        self.context = ssl.create_default_context(cafile=self.folder + "/cert")
+        self.configure()
+        self.process = subprocess.Popen(["nginx", "-p", self.folder, "-c", "main.conf", "-e", "error.log"])
+        deadline = time.monotonic() + 10
+        while True:
+            try:
+                socket.create_connection(("127.0.0.1", self.port)).close()
+                return self
+            except ConnectionRefusedError:
+                assert time.monotonic() < deadline and self.process.poll() is None, "nginx does not start"
+                time.sleep(0.05)
+
+    def stop(self):
+        self.process.send_signal(signal.SIGTERM)
+        self.process.wait(timeout=10)
+
+    def connect(self):
+        """A TLS connection to lab.example, its certificate checked."""
+        return self.context.wrap_socket(socket.create_connection(("127.0.0.1", self.port), timeout=30),
+                                        server_hostname="lab.example")
+
+    def configure(self):
+        with open(SHIPPED) as file:
+            text = file.read()
+        for shipped, here in (("server 127.0.0.1:8080;", f"server 127.0.0.1:{self.upstream};"),
+                              ("listen 80;", f"listen 127.0.0.1:{self.plain};"), ("listen [::]:80;", ""),
+                              ("listen 443 ssl http2;", f"listen 127.0.0.1:{self.port} ssl http2;"),
+                              ("listen [::]:443 ssl http2;", ""),
+                              ("/etc/ssl/certs/lab.example.pem", self.folder + "/cert"),
+                              ("/etc/ssl/private/lab.example.key", self.folder + "/key")):
+            assert text.count(shipped) == 1, shipped
+            text = text.replace(shipped, here)
+        with open(self.folder + "/site.conf", "w") as file:
+            file.write(text)
+        temporary = "".join(f"{kind}_temp_path {self.folder}/{kind};" for kind in
+                            ("client_body", "proxy", "fastcgi", "uwsgi", "scgi"))
+        with open(self.folder + "/main.conf", "w") as file:
+            file.write(f"daemon off; worker_processes 1; pid {self.folder}/pid; events {{}} "
+                       f"http {{ access_log off; {temporary} include site.conf; }}")
