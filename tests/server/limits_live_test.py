@@ -119,6 +119,14 @@ class FullDiskTest(ServerTest):
     options = ("--workers", "1", "--set", "disk_reserve=0")
 
     @classmethod
+    def setUpClass(cls):
+        try:
+            super().setUpClass()
+        except Exception:  # then nothing is torn down
+            subprocess.run(["umount", cls.disk], capture_output=True)
+            raise
+
+    @classmethod
     def prepare(cls):
         super().prepare()
         cls.disk = os.path.join(cls.folder, "disk")
