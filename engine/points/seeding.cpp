@@ -1,11 +1,10 @@
 #include "engine/points/seeding.hpp"
 
-#include "engine/grid/walls.hpp"
-#include "engine/points/blocks.hpp"
-
 #include <algorithm>
 #include <iterator>
 
+#include "engine/grid/walls.hpp"
+#include "engine/points/blocks.hpp"
 #include "engine/scene/region.hpp"
 
 namespace quicksand {
