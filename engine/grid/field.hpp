@@ -1,7 +1,8 @@
 #pragma once
 // Arrays over the whole lattice that cost only where something happens: their memory comes from the system as
 // zeros, page by page, once it is touched. The lattice keeps one plain index, and an empty part of the domain
-// takes no memory. [SAB14] uses virtual memory in this way for sparse grids.
+// takes no memory. After R. Setaluri et al., SPGrid, ACM Trans. Graph. 33 (2014) 205, who use virtual memory
+// in this way for sparse grids.
 
 #include <sys/mman.h>
 

@@ -17,11 +17,11 @@
 namespace quicksand {
 namespace {
 
-/// Point-steps per second and core of the two-phase step, measured on a 2.6 GHz Zen 4 core with
-/// cases/heave; only the estimate of the run's wall time depends on it.
-constexpr double kPointStepsPerSecond = 3e6;
-/// The same step in space, where a point touches 81 faces instead of 18: measured 4 times as long.
-constexpr double kCostInSpace = 4;
+/// Point-steps per second of the two-phase step on one 2.6 GHz core, measured by tests/bench/run; only the
+/// estimate of the run's wall time depends on it.
+constexpr double kPointStepsPerSecond = 7e6;
+/// The same step in space, where a point touches 81 faces instead of 18: measured 3.3 times as long.
+constexpr double kCostInSpace = 3.3;
 
 /// Whether the top of a body lies open to the air anywhere in a stage: no other wet body above its surface,
 /// looked at in every column of cells.

@@ -189,7 +189,6 @@ TEST(Stencil, KernelsInLanesAreThoseOfPointsAlone) {
   expect_lanes_agree<3, QuadraticSpline>();
   expect_lanes_agree<2, LinearHat>();
   expect_lanes_agree<2, SplineMover>();
-  expect_lanes_agree<3, SplineMover>();
   expect_lanes_agree<2, HatMover>();
 }
 
