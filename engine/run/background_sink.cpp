@@ -56,6 +56,7 @@ void BackgroundSink::work() {
     }
     lock.lock();
     frames_ -= item.is_frame;
+    written_ += item.is_frame && !error;
     waiting_.pop_front();
     if (error) {
       error_ = error;

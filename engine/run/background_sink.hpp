@@ -1,4 +1,5 @@
 #pragma once
+#include <atomic>
 #include <condition_variable>
 #include <deque>
 #include <exception>
@@ -24,6 +25,8 @@ class BackgroundSink final : public ResultSink {
   void begin(const std::vector<SeriesInfo>& series) override;
   void frame(Frame frame) override;
   void sample(double time, const std::vector<double>& values) override;
+  /// Frames that the other sink has.
+  std::size_t frames_written() const { return written_; }
   /// Returns when all has been written. No call is valid after it.
   void finish();
 
@@ -42,6 +45,7 @@ class BackgroundSink final : public ResultSink {
   std::condition_variable changed_;
   std::deque<Item> waiting_;  ///< the first one is being written
   std::size_t frames_ = 0;    ///< of them
+  std::atomic<std::size_t> written_ = 0;
   bool ended_ = false;
   std::exception_ptr error_;
   std::thread thread_;  ///< last: the others are there when it begins

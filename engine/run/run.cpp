@@ -174,7 +174,7 @@ class Run {
     p.step = report_.steps;
     p.time_step = last_.dt;
     p.bound = bound;
-    p.frames = report_.frames;
+    p.frames = sink_.frames_written();
     const double wall = seconds_since(start_);
     p.eta_s = p.fraction > 0 ? wall * (1 - p.fraction) / p.fraction : 0;
     monitor_.progress(p);

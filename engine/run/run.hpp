@@ -56,9 +56,9 @@ struct Progress {
   std::string stage;
   double sim_time = 0, end_time = 0;  ///< s
   long step = 0;
-  double time_step = 0;  ///< s, last
-  std::string bound;     ///< what limits it
-  std::size_t frames = 0;
+  double time_step = 0;    ///< s, last
+  std::string bound;       ///< what limits it
+  std::size_t frames = 0;  ///< that the sink has
   double eta_s = 0;
 };
 

@@ -51,12 +51,14 @@ TEST(BackgroundSink, RunsAheadByTwoFramesAtMost) {
   BackgroundSink sink(slow);
   sink.frame(numbered(0));
   EXPECT_EQ(slow.frames, 0);  // did not wait for it
+  EXPECT_EQ(sink.frames_written(), 0u);
   for (std::size_t i = 1; i < 6; ++i) {
     sink.frame(numbered(i));
     EXPECT_GE(slow.frames, static_cast<int>(i) - 2);
   }
   sink.finish();
   EXPECT_EQ(slow.frames, 6);
+  EXPECT_EQ(sink.frames_written(), 6u);
 }
 
 TEST(BackgroundSink, ThrowsWhatTheSinkThrew) {
