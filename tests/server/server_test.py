@@ -8,6 +8,9 @@ import sys
 import tempfile
 import unittest
 
+import h5py
+import numpy
+
 from service_process import ServiceProcess
 
 EXECUTABLE, SMALL_CASE = sys.argv[1:3]
@@ -80,6 +83,18 @@ class ServerTest(unittest.TestCase):
         self.assertEqual(answer.status, status, answer.body)
         self.assertEqual(answer.headers["Content-Type"], "application/problem+json")
         self.assertEqual(answer.json()["status"], status)
+
+
+def assert_same_frames(test, first, second):
+    """Bit for bit, every field of every frame."""
+    with h5py.File(first) as a, h5py.File(second) as b:
+        test.assertEqual(list(a["frames"]), list(b["frames"]))
+        test.assertGreater(len(a["frames"]), 1)
+        for frame in a["frames"]:
+            test.assertEqual(set(a["frames"][frame]), set(b["frames"][frame]))
+            for field in a["frames"][frame]:
+                left, right = a["frames"][frame][field][()], b["frames"][frame][field][()]
+                test.assertTrue(numpy.array_equal(left, right), f"{frame}/{field} differs")
 
 
 def main():
