@@ -102,6 +102,8 @@ const char* word_of(RunStatus status) {
       return "succeeded";
     case RunStatus::failed:
       return "failed";
+    case RunStatus::suspended:
+      return "suspended";
     case RunStatus::canceled:
       return "canceled";
   }

@@ -37,6 +37,7 @@ RunState end_state(RunStatus status) {
       return RunState::succeeded;
     case RunStatus::canceled:
       return RunState::canceled;
+    case RunStatus::suspended:  // queued again
     case RunStatus::failed:
       break;
   }

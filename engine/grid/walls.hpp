@@ -90,6 +90,14 @@ class Walls {
   void set_separated(int d, int face, bool value) { separated_next_[d][face] = value; }
   /// Makes what was set hold from here on: between two steps, so that one step folds with one sign.
   void commit_separated(int d, int face) { separated_[d][face] = separated_next_[d][face]; }
+  /// Both of a face: what holds, and what will.
+  std::uint8_t separation(int d, int face) const {
+    return static_cast<std::uint8_t>(separated_[d][face] + 2 * separated_next_[d][face]);
+  }
+  void set_separation(int d, int face, std::uint8_t both) {
+    separated_[d][face] = both & 1;
+    separated_next_[d][face] = both >> 1;
+  }
 
   /// Recomputes the folds; call after the last close/open.
   void rebuild(const Grid<D>& grid);

@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <initializer_list>
 #include <iterator>
+#include <tuple>
 #include <vector>
 
 #include "engine/grid/field.hpp"
@@ -69,23 +70,27 @@ class Blocks {
     for (const BlockList* list : lists)
       for_runs(list->key, [&](int b, std::size_t, std::size_t) { hold(b); });
     for (const int b : pinned_) hold(b);
-    std::vector<int> before = std::move(active_);
-    active_.clear();
-    for (const int b : before) number_[b] = 0;
+    const std::vector<int> before = clear();
     for (const int b : holding) {
       held_[b] = 0;
       add_around(b);
     }
     std::sort(active_.begin(), active_.end());
-    for (auto& of_color : of_color_) of_color.clear();
-    for (int i = 0; i < count(); ++i) {
-      number_[active_[i]] = i + 1;
-      of_color_[color_of(active_[i])].push_back(i);
-    }
+    number();
     std::vector<int> left;
     std::set_difference(before.begin(), before.end(), active_.begin(), active_.end(),
                         std::back_inserter(left));
     return left;
+  }
+
+  /// Places of the active blocks, ascending.
+  const std::vector<int>& active() const { return active_; }
+  /// Makes just these active. Throws std::out_of_range for a place outside the domain.
+  void adopt(std::vector<int> places) {
+    for (const int b : places) std::ignore = number_.at(b);
+    clear();
+    active_ = std::move(places);
+    number();
   }
 
   /// Groups located points by active block (stable counting sort of their indices).
@@ -166,6 +171,21 @@ class Blocks {
     for (std::size_t from = 0, to; from < key.size(); from = to) {
       for (to = from + 1; to < key.size() && key[to] == key[from];) ++to;
       f(key[from], from, to);
+    }
+  }
+  /// Returns the blocks that were active; none are.
+  std::vector<int> clear() {
+    std::vector<int> before = std::move(active_);
+    active_.clear();
+    for (const int b : before) number_[b] = 0;
+    return before;
+  }
+  /// Numbers and colours of the active blocks.
+  void number() {
+    for (auto& of_color : of_color_) of_color.clear();
+    for (int i = 0; i < count(); ++i) {
+      number_[active_[i]] = i + 1;
+      of_color_[color_of(active_[i])].push_back(i);
     }
   }
   int color_of(int block) const {

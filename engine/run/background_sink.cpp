@@ -7,15 +7,20 @@ BackgroundSink::BackgroundSink(ResultSink& sink) : sink_(sink), thread_([this] {
 BackgroundSink::~BackgroundSink() { stop(); }
 
 void BackgroundSink::begin(const std::vector<SeriesInfo>& series) {
-  add({false, [this, series] { sink_.begin(series); }});
+  add({Item::small, [this, series] { sink_.begin(series); }});
 }
 
 void BackgroundSink::frame(Frame frame) {
-  add({true, [this, kept = std::move(frame)]() mutable { sink_.frame(std::move(kept)); }});
+  add({Item::frame, [this, kept = std::move(frame)]() mutable { sink_.frame(std::move(kept)); }});
 }
 
 void BackgroundSink::sample(double time, const std::vector<double>& values) {
-  add({false, [this, time, values] { sink_.sample(time, values); }});
+  add({Item::small, [this, time, values] { sink_.sample(time, values); }});
+}
+
+/// Waits as a frame does: it may be as large.
+void BackgroundSink::checkpoint(const Checkpoint& checkpoint) {
+  add({Item::checkpoint, [this, checkpoint] { sink_.checkpoint(checkpoint); }});
 }
 
 void BackgroundSink::finish() {
@@ -25,9 +30,9 @@ void BackgroundSink::finish() {
 
 void BackgroundSink::add(Item item) {
   std::unique_lock lock(mutex_);
-  changed_.wait(lock, [&] { return error_ || !item.is_frame || frames_ < kWaiting; });
+  changed_.wait(lock, [&] { return error_ || !item.is_large() || large_ < kWaiting; });
   if (error_) std::rethrow_exception(error_);
-  frames_ += item.is_frame;
+  large_ += item.is_large();
   waiting_.push_back(std::move(item));
   changed_.notify_all();
 }
@@ -55,8 +60,8 @@ void BackgroundSink::work() {
       error = std::current_exception();
     }
     lock.lock();
-    frames_ -= item.is_frame;
-    written_ += item.is_frame && !error;
+    large_ -= item.is_large();
+    written_ += item.kind == Item::frame && !error;
     waiting_.pop_front();
     if (error) {
       error_ = error;

@@ -12,8 +12,8 @@
 namespace quicksand {
 
 /// Passes everything on to another sink from a thread of its own, in order, so that a run goes on while its
-/// frames are compressed and written. At most `kWaiting` frames wait; then the run does. What the other sink
-/// throws is thrown here by the next call. Not for calls from several threads.
+/// frames are compressed and written. At most `kWaiting` frames and checkpoints wait; then the run does. What
+/// the other sink throws is thrown here by the next call. Not for calls from several threads.
 class BackgroundSink final : public ResultSink {
  public:
   explicit BackgroundSink(ResultSink& sink);
@@ -25,6 +25,7 @@ class BackgroundSink final : public ResultSink {
   void begin(const std::vector<SeriesInfo>& series) override;
   void frame(Frame frame) override;
   void sample(double time, const std::vector<double>& values) override;
+  void checkpoint(const Checkpoint& checkpoint) override;
   /// Frames that the other sink has.
   std::size_t frames_written() const { return written_; }
   /// Returns when all has been written. No call is valid after it.
@@ -33,7 +34,8 @@ class BackgroundSink final : public ResultSink {
  private:
   static constexpr std::size_t kWaiting = 2;
   struct Item {
-    bool is_frame;
+    enum Kind { small, frame, checkpoint } kind;
+    bool is_large() const { return kind != small; }
     std::function<void()> write;
   };
   void add(Item item);
@@ -44,7 +46,7 @@ class BackgroundSink final : public ResultSink {
   std::mutex mutex_;
   std::condition_variable changed_;
   std::deque<Item> waiting_;  ///< the first one is being written
-  std::size_t frames_ = 0;    ///< of them
+  std::size_t large_ = 0;     ///< of them
   std::atomic<std::size_t> written_ = 0;
   bool ended_ = false;
   std::exception_ptr error_;

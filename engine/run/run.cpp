@@ -13,6 +13,7 @@
 #include "engine/run/diagnosis.hpp"
 #include "engine/run/frame.hpp"
 #include "engine/run/setup.hpp"
+#include "engine/run/snapshot.hpp"
 #include "engine/run/stage.hpp"
 #include "engine/run/watch.hpp"
 #include "engine/step/phases.hpp"
@@ -29,8 +30,9 @@ double seconds_since(Clock::time_point start) {
 template <int D>
 class Run {
  public:
-  Run(const Scene& scene, ResultSink& sink, RunMonitor& monitor)
-      : scene_(scene),
+  Run(const Scene& scene, ResultSink& sink, RunMonitor& monitor, const RunOptions& options)
+      : options_(options),
+        scene_(scene),
         sink_(sink),
         monitor_(monitor),
         state_(make_state<D>(scene)),
@@ -39,17 +41,20 @@ class Run {
     for (const Stage& stage : scene.stages) end_time_ += stage.duration;
     set_limits();
     measure_motion(state_, last_);
+    if (options_.resume) load(*options_.resume);
   }
 
   RunReport go() {
     sink_.begin(watch_.info());
-    stage_name_ = scene_.stages.front().name;
-    write_sample();
-    write_frame();
-    for (std::size_t k = 0; k < scene_.stages.size(); ++k)
-      if (!run_stage(k)) break;
-    if (last_.finite && last_sample_time_ < state_.time) write_sample();
-    if (last_.finite && last_frame_time_ < state_.time) write_frame();
+    if (!options_.resume) {
+      write_sample();
+      write_frame();
+    }
+    for (; stage_ < scene_.stages.size(); ++stage_)
+      if (!run_stage()) break;
+    const bool shows_end = last_.finite && report_.status != RunStatus::suspended;
+    if (shows_end && last_sample_time_ < state_.time) write_sample();
+    if (shows_end && last_frame_time_ < state_.time) write_frame();
     finish();
     return report_;
   }
@@ -64,32 +69,74 @@ class Run {
   };
 
   /// False when the run has ended before its time.
-  bool run_stage(std::size_t index) {
-    const Stage& stage = scene_.stages[index];
-    stage_name_ = stage.name;
-    begin_stage(index);
-    monitor_.log("stage " + stage.name + " begins at " + text(state_.time) + " s");
-    const double begin = state_.time, end = begin + stage.duration;
-    long rest_steps = 0;
+  bool run_stage() {
+    const Stage& stage = scene_.stages[stage_];
+    if (!inside_stage_) begin_stage();
+    const double end = stage_begin_ + stage.duration;
     while (end - state_.time > kTimeRounding * stage.duration) {
-      if (monitor_.cancelled()) {
-        report_.status = RunStatus::canceled;
-        return false;
+      if (monitor_.cancelled()) return stop(RunStatus::canceled);
+      if (monitor_.suspended()) {
+        save();
+        return stop(RunStatus::suspended);
       }
       if (report_.steps >= scene_.numerics.max_steps) return fail(too_many_steps(scene_, state_.time));
       if (!step(end)) return false;
-      if (!stage.until_rest) continue;
-      rest_steps = last_.max_speed < stage.until_rest->speed ? rest_steps + 1 : 0;
-      if (rest_steps >= kRestSteps && state_.time - begin >= stage.until_rest->at_least) {
-        monitor_.log("at rest after " + text(state_.time - begin) + " s");
+      if (comes_to_rest(stage)) {
+        monitor_.log("at rest after " + text(state_.time - stage_begin_) + " s");
         end_time_ -= end - state_.time;
         break;
       }
+      if (due_to_save()) save();
     }
+    inside_stage_ = false;
     return true;
   }
+  bool stop(RunStatus status) {
+    report_.status = status;
+    return false;
+  }
+  bool comes_to_rest(const Stage& stage) {
+    if (!stage.until_rest) return false;
+    rest_steps_ = last_.max_speed < stage.until_rest->speed ? rest_steps_ + 1 : 0;
+    return rest_steps_ >= kRestSteps && state_.time - stage_begin_ >= stage.until_rest->at_least;
+  }
 
-  void begin_stage(std::size_t index) {
+  /// Everything of a run that lasts from one step to the next.
+  template <class A>
+  void keep(A& a) {
+    a(stage_, inside_stage_, stage_begin_, rest_steps_);
+    a(end_time_, last_frame_time_, last_sample_time_, first_step_, iterations_, bound_seconds_);
+    a(ledger_, watch_, inertia_, last_);
+    a(report_.steps, report_.point_steps, report_.time_step_min, report_.time_step_max, report_.frames,
+      samples_);
+  }
+  void save() {
+    Saver to;
+    keep(to);
+    double wall = seconds_since(start_);
+    to(wall, output_seconds_);
+    save_state(to, state_);
+    sink_.checkpoint({std::move(to.bytes), report_.frames, samples_, state_.time});
+    saved_ = Clock::now();
+  }
+  void load(const Checkpoint& checkpoint) {
+    Loader from(checkpoint.state);
+    keep(from);
+    if (stage_ >= scene_.stages.size()) throw std::runtime_error("the checkpoint is of another case");
+    from(wall_before_, output_seconds_);
+    load_state(from, scene_, stage_, state_);
+    if (!from.empty()) throw std::runtime_error("the checkpoint is of another case");
+    frames_before_ = report_.frames;
+    monitor_.log("resumed at " + text(state_.time) + " s, step " + std::to_string(report_.steps));
+  }
+  bool due_to_save() const {
+    if (options_.checkpoint_interval <= 0) return false;
+    const double so_far = std::chrono::duration<double>(saved_ - start_).count();
+    return seconds_since(saved_) >= std::clamp(so_far, kFirstCheckpoint, options_.checkpoint_interval);
+  }
+
+  void begin_stage() {
+    const std::size_t index = stage_;
     const double inertia = state_.constants.inertia;
     const StageChange<D> change = quicksand::begin_stage(scene_, index, state_);
     ledger_.add(change);
@@ -102,6 +149,10 @@ class Run {
       first_step_ = 0;
     }
     inertia_.begin(scene_, index, state_.time);
+    inside_stage_ = true;
+    stage_begin_ = state_.time;
+    rest_steps_ = 0;
+    monitor_.log("stage " + scene_.stages[index].name + " begins at " + text(state_.time) + " s");
   }
 
   bool step(double stage_end) {
@@ -151,11 +202,12 @@ class Run {
     const OutputTime timed(*this);
     ledger_.measure(state_, last_);
     sink_.sample(state_.time, watch_.sample(state_, last_, ledger_.ledger()));
+    ++samples_;
     last_sample_time_ = state_.time;
   }
   void write_frame() {
     const OutputTime timed(*this);
-    sink_.frame(make_frame(scene_, state_, report_.frames, stage_name_));
+    sink_.frame(make_frame(scene_, state_, report_.frames, stage_name()));
     ++report_.frames;
     last_frame_time_ = state_.time;
   }
@@ -170,12 +222,12 @@ class Run {
     p.sim_time = state_.time;
     p.end_time = end_time_;
     p.fraction = end_time_ > 0 ? std::min(1.0, state_.time / end_time_) : 1;
-    p.stage = stage_name_;
+    p.stage = stage_name();
     p.step = report_.steps;
     p.time_step = last_.dt;
     p.bound = bound;
-    p.frames = sink_.frames_written();
-    const double wall = seconds_since(start_);
+    p.frames = frames_before_ + sink_.frames_written();
+    const double wall = wall_before_ + seconds_since(start_);
     p.eta_s = p.fraction > 0 ? wall * (1 - p.fraction) / p.fraction : 0;
     monitor_.progress(p);
   }
@@ -194,7 +246,7 @@ class Run {
     report_.heave = watch_.heave();
     report_.quasi_static = inertia_.reports();
     report_.sim_time = state_.time;
-    report_.wall_seconds = seconds_since(start_);
+    report_.wall_seconds = wall_before_ + seconds_since(start_);
     report_.pressure_iterations_mean = report_.steps ? iterations_ / static_cast<double>(report_.steps) : 0;
     for (const auto& [name, seconds] : bound_seconds_) report_.steps_bound_by.push_back({name, seconds});
     for (std::size_t i = 0; i < kPhaseNames.size(); ++i)
@@ -222,6 +274,9 @@ class Run {
     if (first_step_ == 0) first_step_ = std::min(dt, scene_.output.frame_interval);
     return first_step_;
   }
+  const std::string& stage_name() const {
+    return scene_.stages[std::min(stage_, scene_.stages.size() - 1)].name;
+  }
   static std::string text(double value) {
     char buffer[32];
     std::snprintf(buffer, sizeof buffer, "%.6g", value);
@@ -236,6 +291,10 @@ class Run {
   /// A step this much shorter than the first one says that the state has run away.
   static constexpr double kCollapse = 1e-5;
 
+  /// s of wall time, before which nothing is worth a checkpoint.
+  static constexpr double kFirstCheckpoint = 0.25;
+
+  const RunOptions& options_;
   const Scene& scene_;
   BackgroundSink sink_;
   RunMonitor& monitor_;
@@ -245,16 +304,21 @@ class Run {
   InertiaWatch inertia_;
   StepReport<D> last_;
   RunReport report_;
-  std::string stage_name_;
+  std::size_t stage_ = 0, samples_ = 0;
+  bool inside_stage_ = false;
+  double stage_begin_ = 0;  ///< s
+  long rest_steps_ = 0;
   double end_time_ = 0, last_frame_time_ = 0, last_sample_time_ = 0, first_step_ = 0, iterations_ = 0;
-  double output_seconds_ = 0;  ///< wall time
+  double output_seconds_ = 0;      ///< wall time
+  double wall_before_ = 0;         ///< s, of the run that was resumed
+  std::size_t frames_before_ = 0;  ///< that the sink had from it
   std::map<std::string, double> bound_seconds_;
-  Clock::time_point start_ = Clock::now();
+  Clock::time_point start_ = Clock::now(), saved_ = start_;
 };
 
 template <int D>
-RunReport run_in(const Scene& scene, ResultSink& sink, RunMonitor& monitor) {
-  return Run<D>(scene, sink, monitor).go();
+RunReport run_in(const Scene& scene, ResultSink& sink, RunMonitor& monitor, const RunOptions& options) {
+  return Run<D>(scene, sink, monitor, options).go();
 }
 
 }  // namespace
@@ -263,8 +327,8 @@ RunReport run(const Scene& scene, ResultSink& sink, RunMonitor& monitor, const R
   tbb::task_arena arena(options.threads > 0 ? options.threads : tbb::task_arena::automatic);
   return arena.execute([&]() -> RunReport {
     try {
-      return scene.domain.dimension == Dimension::space ? run_in<3>(scene, sink, monitor)
-                                                        : run_in<2>(scene, sink, monitor);
+      return scene.domain.dimension == Dimension::space ? run_in<3>(scene, sink, monitor, options)
+                                                        : run_in<2>(scene, sink, monitor, options);
     } catch (const std::exception& e) {
       RunReport report;
       report.status = RunStatus::failed;

@@ -39,6 +39,13 @@ struct SeriesInfo {
   int components = 1;
 };
 
+/// A run between two steps, from which `run` goes on to the same results, bit for bit.
+struct Checkpoint {
+  std::string state;
+  std::size_t frames = 0, samples = 0;  ///< that reached the sink before it
+  double time = 0;                      ///< s
+};
+
 /// Receives results as the run goes. Called from one thread, in order of time. Implementations throw
 /// std::runtime_error when they cannot store (the run then ends as failed, code "output").
 /// Called from one thread at a time, which need not be the one that computes.
@@ -49,6 +56,9 @@ class ResultSink {
   virtual void frame(Frame frame) = 0;
   /// `values` holds every series' components one after the other, in the order of `begin`.
   virtual void sample(double time, const std::vector<double>& values) = 0;
+  /// Everything before it has been handed over. One that cannot be stored is no failure: there is the one
+  /// before.
+  virtual void checkpoint(const Checkpoint&) {}
 };
 
 struct Progress {
@@ -69,6 +79,8 @@ class RunMonitor {
   virtual void progress(const Progress&) {}
   virtual void log(const std::string& /*line*/) {}
   virtual bool cancelled() { return false; }
+  /// Asks for a checkpoint and the run's end (RunStatus::suspended).
+  virtual bool suspended() { return false; }
 };
 
 /// What was conserved, and everything that was done to the state other than by the equations.
@@ -104,6 +116,10 @@ struct QuasiStaticReport {
   /// –, largest kinetic over strain energy, after the first tenth of the process time
   double inertia_ratio = 0;
   bool negligible = true;  ///< whether the ratio stayed below 0.01
+  template <class A>
+  void keep(A& a) {
+    a(stage, inertia, process_time, transit_time, inertia_ratio, negligible);
+  }
 };
 
 /// Headline figures of a watched body (Output::heave).
@@ -124,7 +140,7 @@ struct Failure {
   std::array<double, 3> place{};  ///< m
 };
 
-enum class RunStatus { succeeded, failed, canceled };
+enum class RunStatus { succeeded, failed, canceled, suspended };
 
 struct PhaseTime {
   std::string name;    ///< phase of the step: "to grid", "pressure", …; "output": frames and samples
@@ -148,10 +164,15 @@ struct RunReport {
 
 struct RunOptions {
   int threads = 0;  ///< 0: all cores. Never changes the result.
+  /// s of wall time between two checkpoints; 0: none. The first ones come sooner, so that no more than half
+  /// of what was computed is ever lost.
+  double checkpoint_interval = 0;
+  const Checkpoint* resume = nullptr;  ///< of the same scene; goes on from it
 };
 
 /// Requires `check(scene)` to be empty. Never throws for what happens in the simulation; frames up to a
-/// failure or cancellation have reached the sink.
+/// failure or cancellation have reached the sink. Resumed, the sink gets `begin`, then only what comes after
+/// the checkpoint.
 RunReport run(const Scene& scene, ResultSink& sink, RunMonitor& monitor, const RunOptions& options = {});
 
 }  // namespace quicksand

@@ -194,13 +194,26 @@ State<D> make_state(const Scene& scene) {
 }
 
 template <int D>
-void enter_stage(const Scene& scene, const Stage& stage, State<D>& s) {
+void set_walls(const Scene& scene, const Stage& stage, State<D>& s) {
   SceneWalls<D> walls = make_walls<D>(scene, s.grid, stage.open_gates, s.removed);
   s.water_walls = std::move(walls.water);
   s.soil_walls = std::move(walls.soil);
   s.volume = kernel_volumes<D>(s.grid, s.water_walls, s.constants.kernel, scene.numerics.points_per_cell);
   if (s.ports.empty()) make_ports(walls.ports, s);
   for (const Port<D>& port : s.ports) s.water_walls.set_port_open(port.d, port.face, port.open);
+}
+
+template <int D>
+void scale_limits(State<D>& s) {
+  const Constants<D>& c = s.constants;
+  for (std::size_t i = 0; i < c.soils.size(); ++i)
+    s.constants.step_limits[i] = StepLimit(c.soils[i], c.water_density, c.water_compliance,
+                                           bounding_edge(c.kernel, s.grid.h), c.inertia);
+}
+
+template <int D>
+void enter_stage(const Scene& scene, const Stage& stage, State<D>& s) {
+  set_walls(scene, stage, s);
   set_levels(scene, stage, s);
   s.constants.damping = stage.damping;
   switch_loads(scene, stage, s);
@@ -209,6 +222,10 @@ void enter_stage(const Scene& scene, const Stage& stage, State<D>& s) {
 
 template State<2> make_state<2>(const Scene&);
 template State<3> make_state<3>(const Scene&);
+template void set_walls<2>(const Scene&, const Stage&, State<2>&);
+template void set_walls<3>(const Scene&, const Stage&, State<3>&);
+template void scale_limits<2>(State<2>&);
+template void scale_limits<3>(State<3>&);
 template void enter_stage<2>(const Scene&, const Stage&, State<2>&);
 template void enter_stage<3>(const Scene&, const Stage&, State<3>&);
 

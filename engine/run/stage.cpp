@@ -31,9 +31,7 @@ void scale_inertia(double inertia, State<D>& s, StageChange<D>& change) {
   // Waves take √inertia times as long: rates per transit stay.
   c.pic_rate /= std::sqrt(ratio);
   c.drift_time *= std::sqrt(ratio);
-  for (std::size_t i = 0; i < c.soils.size(); ++i)
-    c.step_limits[i] = StepLimit(c.soils[i], c.water_density, c.water_compliance,
-                                 bounding_edge(c.kernel, s.grid.h), inertia);
+  scale_limits(s);
 }
 
 }  // namespace

@@ -43,6 +43,10 @@ class InertiaWatch {
     r.negligible = r.inertia_ratio <= kNegligibleInertia;
   }
   const std::vector<QuasiStaticReport>& reports() const { return reports_; }
+  template <class A>
+  void keep(A& a) {
+    a(reports_, active_, settled_);
+  }
 
  private:
   std::vector<QuasiStaticReport> reports_;

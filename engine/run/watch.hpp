@@ -19,6 +19,10 @@ class LedgerKeeper {
   /// Volumes, masses, energies; before each sample.
   void measure(const State<D>& state, const StepReport<D>& step);
   const Ledger& ledger() const { return ledger_; }
+  template <class A>
+  void keep(A& a) {
+    a(ledger_, start_momentum_, driving_impulse_);
+  }
 
  private:
   double potential(const State<D>& state) const;
@@ -42,6 +46,10 @@ class Watch {
   /// After every step: keeps the largest head difference until the watched body has moved.
   void track(const State<D>& state);
   const std::vector<HeaveReport>& heave() const { return heave_; }
+  template <class A>
+  void keep(A& a) {
+    a(rise_, heave_);
+  }
 
  private:
   void sample_rise(double time);

@@ -46,6 +46,14 @@ void activate_blocks(State<D>& s) {
   s.blocks.group(s.water_blocks);
 }
 
+template <int D>
+void adopt_blocks(State<D>& s, std::vector<int> places) {
+  for (const int block : s.blocks.active()) forget(s, block);
+  s.blocks.adopt(std::move(places));
+}
+
+template void adopt_blocks<2>(State<2>&, std::vector<int>);
+template void adopt_blocks<3>(State<3>&, std::vector<int>);
 template void activate_blocks<2>(State<2>&);
 template void activate_blocks<3>(State<3>&);
 

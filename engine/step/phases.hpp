@@ -12,6 +12,9 @@ struct StepReport;
 /// Places of the points → `blocks`, `soil_blocks`, `water_blocks`.
 template <int D>
 void activate_blocks(State<D>& s);
+/// Makes the blocks at these places active and all fields empty.
+template <int D>
+void adopt_blocks(State<D>& s, std::vector<int> places);
 /// Points → the same in the order of their cells, every so many steps.
 template <int D>
 void sort_points(State<D>& s);
@@ -51,6 +54,9 @@ void predict_velocities(State<D>& s, double dt);
 /// Between two steps only: a step folds and unfolds alike.
 template <int D>
 void mark_plates(State<D>& s);
+/// The same for the rows that plates hold already.
+template <int D>
+void mark_again(State<D>& s);
 /// What kernels leave beyond plates mirrored back → `sums`.
 template <int D>
 void fold_plates(State<D>& s);

@@ -217,6 +217,17 @@ void mark_plates(State<D>& s) {
   make_ghosts(s);
 }
 
+template <int D>
+void mark_again(State<D>& s) {
+  if (s.plates.empty()) return;
+  s.plate_of.assign(s.grid.count(), 0);
+  for (std::size_t k = 0; k < s.plates.size(); ++k)
+    for (const int face : s.plates[k].row) s.plate_of.at(face) = static_cast<std::int32_t>(k + 1);
+  make_ghosts(s);
+}
+
+template void mark_again<2>(State<2>&);
+template void mark_again<3>(State<3>&);
 template void fold_plates<2>(State<2>&);
 template void fold_plates<3>(State<3>&);
 template void unfold_plates<2>(State<2>&);
