@@ -13,18 +13,21 @@
 namespace quicksand {
 namespace {
 
-/// Set by Ctrl-C; the run ends within one step and keeps what it has.
+/// Set by Ctrl-C and SIGTERM; the run ends within one step, keeps what it has and can be resumed.
 std::atomic<bool> interrupted{false};
 static_assert(std::atomic<bool>::is_always_lock_free);  // a signal handler may set it
 
 class TerminalMonitor final : public RunMonitor {
  public:
   void progress(const Progress& now) override { bar_.draw(now); }
-  bool cancelled() override { return interrupted; }
+  void log(const std::string& line) override { notes_ += line + '\n'; }
+  bool suspended() override { return interrupted; }
+  const std::string& notes() const { return notes_; }
   void finish() { bar_.finish(); }
 
  private:
   ProgressBar bar_;
+  std::string notes_;
 };
 
 /// A file of an earlier run in the folder, finished or left behind; empty if there is none.
@@ -65,8 +68,10 @@ void print_faults(const std::string& what, const std::vector<Fault>& faults) {
 int run_command(const RunCommand& command) {
   const auto text = read_case_file(command.case_file);
   if (!text) return exit_status::bad_input;
-  if (const std::string earlier = earlier_result(command.out); !earlier.empty() && !command.overwrite) {
-    std::cerr << earlier << " exists: give another folder to --out, or --overwrite to replace that run\n";
+  if (const std::string earlier = earlier_result(command.out);
+      !earlier.empty() && !command.overwrite && !command.resume) {
+    std::cerr << earlier << " exists: give another folder to --out, --overwrite to replace that run, or "
+              << "--resume to go on with it\n";
     return exit_status::not_written;
   }
   std::signal(SIGINT, [](int) { interrupted = true; });
@@ -76,8 +81,11 @@ int run_command(const RunCommand& command) {
     TerminalMonitor monitor;
     RunOptions options;
     options.threads = command.threads;
-    done = execute(*text, command.preset, command.out, monitor, options);
+    options.checkpoint_interval = command.checkpoint_interval;
+    done = execute(*text, command.preset, command.out, monitor, options,
+                   command.resume ? Resume::required : Resume::never);
     monitor.finish();
+    if (done.report.failure.code == "no_checkpoint") std::cerr << monitor.notes();
   }
   if (!done.faults.empty()) {
     print_faults(command.case_file, done.faults);
@@ -85,10 +93,14 @@ int run_command(const RunCommand& command) {
   }
   if (done.report.status == RunStatus::failed)
     std::cerr << "failed (" << done.report.failure.code << "): " << done.report.failure.message << '\n';
+  if (done.report.failure.code == "no_checkpoint") return exit_status::bad_input;
   if (done.report.status == RunStatus::failed && done.report.failure.code == "output")
     return exit_status::not_written;
   const auto report = read_text(std::filesystem::path(command.out) / "run.json");
   if (report) std::cout << headline_text(*report) << files_text(command.out);
+  if (done.report.status == RunStatus::suspended)
+    std::cout << "stopped; to go on: quicksand run " << command.case_file << " --out " << command.out
+              << " --resume\n";
   return done.report.status == RunStatus::succeeded ? exit_status::ok : exit_status::failed;
 }
 

@@ -22,7 +22,9 @@ struct RunCommand {
   std::string case_file, out;
   std::optional<Preset> preset;
   int threads = 0;
-  bool overwrite = false;  ///< replace the results that `out` holds already
+  bool overwrite = false;           ///< replace the results that `out` holds already
+  bool resume = false;              ///< go on from the last checkpoint in `out`
+  double checkpoint_interval = 60;  ///< s
 };
 int run_command(const RunCommand& command);
 

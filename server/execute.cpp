@@ -6,6 +6,8 @@
 #include <array>
 #include <filesystem>
 #include <fstream>
+#include <map>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <thread>
@@ -52,28 +54,62 @@ RunReport failed(const std::string& code, const std::string& message) {
   return report;
 }
 
+using Documents = std::map<std::string, std::string>;
+
+/// A result file, and where its run goes on from, if it does.
+struct Opened {
+  std::unique_ptr<ResultFile> file;
+  std::optional<StoredCheckpoint> from;
+};
+
+/// Goes on from the newest checkpoint that can be used; without one there is no file.
+Opened reopen(const std::string& folder, const Documents& documents, RunMonitor& monitor) {
+  for (const auto& path : checkpoint_files(folder)) try {
+      StoredCheckpoint from = read_checkpoint(path);
+      if (from.identity != run_identity(documents))
+        throw std::runtime_error("it is of another case or version of quicksand");
+      auto file = std::make_unique<ResultFile>(folder, documents, &from);
+      return {std::move(file), std::move(from)};
+    } catch (const std::runtime_error& error) {
+      monitor.log(path.filename().string() + " cannot be used: " + error.what());
+    }
+  return {};
+}
+
+bool needs_checkpoint(const RunReport& report) {
+  return report.status == RunStatus::suspended ||
+         (report.status == RunStatus::failed && report.failure.code == "output");
+}
+
 /// Runs a valid scene; exceptions mean that its results could not be stored.
 RunReport run_into(const std::string& folder, const std::string& case_text, const Scene& scene,
-                   RunMonitor& monitor, const RunOptions& options) {
+                   RunMonitor& monitor, RunOptions options, Resume resume) {
   const Plan plan = make_plan(scene);
-  ResultFile file(folder, {{"case", case_text},
-                           {"case_resolved", resolved_case(scene)},
-                           {"plan", plan_json(plan)},
-                           {"units", units_document},
-                           {"engine_version", engine_version},
-                           {"host", host_document()}});
-  RunReport report = run(scene, file, monitor, options);
+  const Documents documents{
+      {"case", case_text},       {"case_resolved", resolved_case(scene)}, {"plan", plan_json(plan)},
+      {"units", units_document}, {"engine_version", engine_version},      {"host", host_document()}};
+  Opened opened;
+  if (resume != Resume::never) opened = reopen(folder, documents, monitor);
+  if (!opened.file && resume == Resume::required)
+    return failed("no_checkpoint",
+                  "the folder holds no checkpoint of this case and version; run it from its beginning");
+  if (!opened.file) opened.file = std::make_unique<ResultFile>(folder, documents);
+  if (opened.from) options.resume = &opened.from->run;
+  std::error_code none;
+  std::filesystem::remove(std::filesystem::path(folder) / "run.json", none);  // of a run that was suspended
+  RunReport report = run(scene, *opened.file, monitor, options);
   const std::string text = report_json(scene, plan, report);
-  file.document("report", text);
-  file.close();
+  opened.file->document("report", text);
+  opened.file->close();
   write_atomically(std::filesystem::path(folder) / "run.json", text);
+  if (!needs_checkpoint(report)) remove_checkpoints(folder);
   return report;
 }
 
 }  // namespace
 
 Execution execute(const std::string& case_text, const std::optional<Preset>& preset,
-                  const std::string& folder, RunMonitor& monitor, const RunOptions& options) {
+                  const std::string& folder, RunMonitor& monitor, const RunOptions& options, Resume resume) {
   Execution execution;
   try {
     ParsedCase parsed = parse_case(case_text, preset);
@@ -82,7 +118,7 @@ Execution execute(const std::string& case_text, const std::optional<Preset>& pre
       return execution;
     }
     std::filesystem::create_directories(folder);
-    execution.report = run_into(folder, case_text, *parsed.scene, monitor, options);
+    execution.report = run_into(folder, case_text, *parsed.scene, monitor, options, resume);
   } catch (const std::filesystem::filesystem_error& error) {
     execution.report = failed("output", "cannot create the output folder: " + error.code().message());
   } catch (const std::runtime_error& error) {

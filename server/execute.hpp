@@ -13,7 +13,15 @@ struct Execution {
   std::vector<Fault> faults;  ///< not empty: nothing was run and nothing written
   RunReport report;
 };
+/// Whether to go on from the folder's newest checkpoint that is whole and of this case and version.
+enum class Resume {
+  never,
+  if_possible,  ///< else from the beginning; the monitor's log says why
+  required      ///< else the run fails, code "no_checkpoint", and nothing is touched
+};
+/// Checkpoints are kept when the run is suspended or cannot store its results, and removed otherwise.
 Execution execute(const std::string& case_text, const std::optional<Preset>& preset,
-                  const std::string& folder, RunMonitor& monitor, const RunOptions& options);
+                  const std::string& folder, RunMonitor& monitor, const RunOptions& options,
+                  Resume resume = Resume::never);
 
 }  // namespace quicksand

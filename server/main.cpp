@@ -44,6 +44,12 @@ void add_local_commands(CLI::App& app, CommandLine& line) {
   add_preset(run, line.run.preset);
   run->add_option("--threads", line.run.threads, "0: all cores")->check(CLI::Range(0, 1024));
   run->add_flag("--overwrite", line.run.overwrite, "replace an earlier run's results in that folder");
+  run->add_flag("--resume", line.run.resume, "go on from the last checkpoint in that folder")
+      ->excludes("--overwrite");
+  run->add_option("--checkpoint-interval", line.run.checkpoint_interval,
+                  "s between two checkpoints, the first ones sooner; 0: only when it is stopped")
+      ->check(CLI::Range(0.0, 86400.0))
+      ->capture_default_str();
   run->callback([&line] { line.status = run_command(line.run); });
 
   CLI::App* check = app.add_subcommand("check", "print what a case would compute, or its faults");

@@ -6,9 +6,9 @@
 #include <cstring>
 #include <set>
 
+#include "engine/results/result_reader.hpp"
 #include "server/http_parameters.hpp"
 #include "server/http_problem.hpp"
-#include "server/result_reader.hpp"
 #include "server/route_handlers.hpp"
 #include "server/run_json.hpp"
 

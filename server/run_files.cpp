@@ -2,21 +2,20 @@
 
 #include <array>
 
+#include "engine/results/result_file.hpp"
 #include "server/sha256.hpp"
 
 namespace quicksand {
 namespace {
 
-/// The files of a complete run; `.part` beside them is what a killed server left.
+/// The files of a complete run.
 constexpr std::array<const char*, 3> result_names{"result.vtkhdf", "result.xdmf", "run.json"};
 
 }  // namespace
 
 void remove_results(const std::filesystem::path& run_folder) {
-  for (const char* name : result_names) {
-    std::filesystem::remove(run_folder / name);
-    std::filesystem::remove(run_folder / (std::string(name) + ".part"));
-  }
+  remove_result_files(run_folder.string());
+  for (const char* name : {"run.json", "run.json.part"}) std::filesystem::remove(run_folder / name);
 }
 
 std::vector<StoredResult> collect_results(const std::filesystem::path& run_folder) {

@@ -6,7 +6,8 @@
 
 namespace quicksand {
 
-/// Removes a run's results, complete or `.part`; its log stays. Throws std::filesystem::filesystem_error.
+/// Removes a run's results, complete or not, with its checkpoints; its log stays. Throws
+/// std::filesystem::filesystem_error.
 void remove_results(const std::filesystem::path& run_folder);
 
 /// The complete results in the folder, with their sums. Throws std::runtime_error when one cannot be read.

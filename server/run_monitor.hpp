@@ -23,14 +23,15 @@ class StoreMonitor final : public RunMonitor {
   /// Progress is written at most this often, whatever the length of a step.
   static constexpr std::chrono::milliseconds progress_interval{500};
 
-  /// `cancel` and `stopping` end the run within one step. Opens the log; throws spdlog::spdlog_ex when the
-  /// disk refuses.
+  /// `cancel` ends the run within one step, `stopping` suspends it. Opens the log; throws spdlog::spdlog_ex
+  /// when the disk refuses.
   StoreMonitor(const StoredRun& run, Store& store, const StateFolder& folder, ChangeBell& bell,
                Metrics& metrics, const std::atomic<bool>& cancel, const std::atomic<bool>& stopping);
 
   void progress(const Progress& now) override;
   void log(const std::string& line) override;
-  bool cancelled() override { return cancel_ || stopping_; }
+  bool cancelled() override { return cancel_; }
+  bool suspended() override { return stopping_; }
   /// Writes the last progress, which the throttle may have held back.
   void flush();
 

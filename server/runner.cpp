@@ -7,6 +7,7 @@
 #include <cerrno>
 #include <system_error>
 
+#include "engine/results/checkpoint_file.hpp"
 #include "server/execute.hpp"
 #include "server/limits.hpp"
 #include "server/run_files.hpp"
@@ -165,27 +166,29 @@ Runner::End Runner::compute(Active& active) {
   const StoredRun& run = active.run;
   const auto folder = folder_.run(run.id);
   std::filesystem::create_directories(folder);
-  remove_results(folder);
   StoreMonitor monitor(run, store_, folder_, bell_, metrics_, active.cancel, stopping_);
   RunOptions options;
   options.threads = threads_for(settings_, run.cost);
+  options.checkpoint_interval = static_cast<double>(settings_.checkpoint_s);
   monitor.log("started, engine " + run.engine_version + ", threads " + std::to_string(options.threads));
-  const Execution done =
-      execute(store_.case_text(run.id).value_or(""), {}, folder.string(), monitor, options);
+  const Execution done = execute(store_.case_text(run.id).value_or(""), {}, folder.string(), monitor, options,
+                                 Resume::if_possible);
   monitor.flush();
 
   End end;
   end.state = done.faults.empty() ? end_state(done.report.status) : RunState::failed;
   if (!done.faults.empty()) end.failure = Failure{"invalid_case", one_line(done.faults), 0, {}};
-  if (done.faults.empty() && end.state == RunState::failed) end.failure = done.report.failure;
+  const bool failed = done.faults.empty() && done.report.status == RunStatus::failed;
+  if (failed) end.failure = done.report.failure;
+  if (done.report.status != RunStatus::suspended) remove_checkpoints(folder);
   const std::lock_guard lock(mutex_);
   if (end.state == RunState::canceled && active.limit) {
     end.state = RunState::failed;
     end.failure = active.limit;
     end.failure->time = done.report.sim_time;
   }
-  end.again = end.state == RunState::canceled && stopping_ && !active.cancel;
-  monitor.log(end.again ? "the server stops; the run is queued again"
+  end.again = done.report.status == RunStatus::suspended;
+  monitor.log(end.again ? "the server stops; the run is queued again and goes on from here"
                         : std::string("ended: ") + state_name(end.state) +
                               (end.failure ? " " + end.failure->message : ""));
   return end;

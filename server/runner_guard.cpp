@@ -3,6 +3,7 @@
 #include <spdlog/spdlog.h>
 
 #include "api/case_json.hpp"
+#include "engine/results/checkpoint_file.hpp"
 #include "server/limits.hpp"
 #include "server/machine.hpp"
 #include "server/run_files.hpp"
@@ -15,13 +16,27 @@ namespace {
 constexpr std::chrono::seconds guard_interval{1};
 constexpr Milliseconds day_ms = 24LL * 3600 * 1000;
 
+/// When it was stored; 0: there is none.
+Milliseconds newest_checkpoint(const std::filesystem::path& run_folder) {
+  const auto files = checkpoint_files(run_folder);
+  std::error_code none;
+  if (files.empty()) return 0;
+  const auto written = std::filesystem::last_write_time(files.front(), none);
+  const auto since_epoch = std::chrono::file_clock::to_sys(written).time_since_epoch();
+  return none ? 0 : std::chrono::duration_cast<std::chrono::milliseconds>(since_epoch).count();
+}
+
 }  // namespace
 
 void Runner::recover() {
-  const Recovery recovery = store_.recover();
+  const Recovery recovery = store_.recover([&](const StoredRun& run) {
+    return run.started && newest_checkpoint(folder_.run(run.id)) > *run.started;
+  });
   for (const auto& id : recovery.requeued)
-    spdlog::warn("run={} interrupted, queued again from its start", id);
-  for (const auto& id : recovery.interrupted) spdlog::error("run={} interrupted twice, failed", id);
+    spdlog::warn("run={} interrupted, queued again{}", id,
+                 newest_checkpoint(folder_.run(id)) > 0 ? " from its last checkpoint" : " from its start");
+  for (const auto& id : recovery.interrupted)
+    spdlog::error("run={} interrupted too often without getting further, failed", id);
   for (const auto& id : recovery.canceled) spdlog::info("run={} canceled", id);
   // Folders whose record is gone: the server died between deleting the record and its files.
   for (const auto& entry : std::filesystem::directory_iterator(folder_.runs()))

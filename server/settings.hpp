@@ -24,6 +24,8 @@ struct Settings {
   Count threads_per_run = 0;
   Count points_per_thread = 2000;
 
+  Count checkpoint_s = 60;
+
   Count max_body_bytes = 4 << 20;
   Count max_queued = 1000;
   Count max_runs_per_key = 100;

@@ -34,6 +34,11 @@ const std::vector<Setting>& settings_table() {
       {Kind::count, "points_per_thread", &Settings::points_per_thread, 1, many,
        "Points that keep one thread busy; below, more threads cost more than they give."},
 
+      {Kind::count, "checkpoint_s", &Settings::checkpoint_s, 0, 24 * 3600,
+       "Between two checkpoints of a run, s; the first ones come sooner. After a kill, a power loss or a\n"
+       "restart a run goes on from its last one, with the same results. 0: none while it computes, only at\n"
+       "an orderly stop."},
+
       {Kind::bytes, "max_body_bytes", &Settings::max_body_bytes, 1024, 64 << 20,
        "Largest case that is taken; larger ones get 413."},
       {Kind::count, "max_queued", &Settings::max_queued, 1, many,

@@ -7,6 +7,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <limits>
 #include <mutex>
 #include <optional>
@@ -46,7 +47,7 @@ struct StoredRun {
   std::optional<Milliseconds> started, finished;
   std::optional<Failure> failure;
   std::string progress;                 ///< JSON text; empty until the first step
-  int retries = 0;                      ///< how often it was started again after a crash
+  int retries = 0;                      ///< interruptions in a row, without a checkpoint between them
   long long revision = 0;               ///< rises with every change of this record
   std::optional<Milliseconds> expired;  ///< when its files were removed by policy
 };
@@ -125,9 +126,11 @@ class Store {
               const std::vector<StoredResult>& results);
   /// running → queued, for a server that stops in good order.
   void requeue(const std::string& id);
-  /// To be called once at start: what a killed server left running is queued again the first time and
-  /// failed with code "interrupted" the second; what it was canceling is canceled.
-  Recovery recover();
+  /// To be called once at start: what a killed server left running is queued again, but fails with code
+  /// "interrupted" when that happens `most_fruitless` times in a row without `advanced(run)`: it may be what
+  /// brings the server down. What was being canceled is canceled.
+  static constexpr int most_fruitless = 8;
+  Recovery recover(const std::function<bool(const StoredRun&)>& advanced);
 
   enum class Removal { removed, active, unknown };
   Removal remove(const std::string& id);

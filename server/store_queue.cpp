@@ -31,11 +31,11 @@ void set_ended(SQLite::Database& database, const std::string& id, RunState end, 
   set.exec();
 }
 
-void set_queued_again(SQLite::Database& database, const std::string& id, int more_retries) {
+void set_queued_again(SQLite::Database& database, const std::string& id, int retries) {
   SQLite::Statement set(database,
-                        "UPDATE runs SET state = 'queued', started = NULL, progress = '', retries = retries "
-                        "+ ?, revision = revision + 1 WHERE id = ?");
-  set.bind(1, more_retries);
+                        "UPDATE runs SET state = 'queued', started = NULL, progress = '', retries = ?, "
+                        "revision = revision + 1 WHERE id = ?");
+  set.bind(1, retries);
   set.bind(2, id);
   set.exec();
 }
@@ -109,11 +109,11 @@ void Store::requeue(const std::string& id) {
   const std::lock_guard lock(mutex_);
   SQLite::Transaction transaction(state_, SQLite::TransactionBehavior::IMMEDIATE);
   const auto run = find_run(state_, id);
-  if (run && run->state == RunState::running) set_queued_again(state_, id, 0);
+  if (run && run->state == RunState::running) set_queued_again(state_, id, run->retries);
   transaction.commit();
 }
 
-Recovery Store::recover() {
+Recovery Store::recover(const std::function<bool(const StoredRun&)>& advanced) {
   const std::lock_guard lock(mutex_);
   Recovery recovery;
   SQLite::Transaction transaction(state_, SQLite::TransactionBehavior::IMMEDIATE);
@@ -122,14 +122,17 @@ Recovery Store::recover() {
     recovery.canceled.push_back(run.id);
   }
   for (const StoredRun& run : runs_in(state_, RunState::running)) {
-    if (run.retries == 0) {
-      set_queued_again(state_, run.id, 1);
+    const int retries = advanced(run) ? 1 : run.retries + 1;
+    if (retries < most_fruitless) {
+      set_queued_again(state_, run.id, retries);
       recovery.requeued.push_back(run.id);
       continue;
     }
     set_failure(state_, run.id,
                 {"interrupted",
-                 "the server was killed twice while it computed this run; it is not tried a third time",
+                 "the server was killed " + std::to_string(most_fruitless) +
+                     " times in a row while it computed this run, before the run got any further; it is not "
+                     "tried again",
                  0,
                  {}});
     set_ended(state_, run.id, RunState::failed, clock_());

@@ -84,7 +84,13 @@ void check(herr_t status, const std::string& what) {
   if (status < 0) fail(what);
 }
 
+bool exists(hid_t parent, const std::string& name) {
+  return H5Lexists(parent, name.c_str(), H5P_DEFAULT) > 0;
+}
+
 Handle create_group(hid_t parent, const std::string& name) {
+  if (exists(parent, name))
+    return Handle(H5Gopen2(parent, name.c_str(), H5P_DEFAULT), H5Gclose, "cannot open group " + name);
   return Handle(H5Gcreate2(parent, name.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose,
                 "cannot create group " + name);
 }
@@ -105,8 +111,7 @@ void put_attribute(hid_t object, const std::string& name, const std::string& tex
 
 void put_text(hid_t group, const std::string& name, const std::string& text) {
   const std::string what = "cannot write document " + name;
-  if (H5Lexists(group, name.c_str(), H5P_DEFAULT) > 0)
-    check(H5Ldelete(group, name.c_str(), H5P_DEFAULT), what);
+  if (exists(group, name)) check(H5Ldelete(group, name.c_str(), H5P_DEFAULT), what);
   const Handle type = string_type(text), space = scalar_space(), properties = dataset_properties();
   const Handle dataset(
       H5Dcreate2(group, name.c_str(), type.get(), space.get(), H5P_DEFAULT, properties.get(), H5P_DEFAULT),
@@ -123,6 +128,10 @@ Handle dataset_properties() {
 Table::Table(hid_t group, const std::string& name, hid_t type, hsize_t columns, hsize_t chunk_rows,
              Storage storage)
     : name_(name), columns_(columns) {
+  if (exists(group, name)) {
+    dataset_ = Handle(H5Dopen2(group, name.c_str(), H5P_DEFAULT), H5Dclose, "cannot open dataset " + name);
+    return;
+  }
   const std::string what = "cannot create dataset " + name;
   const int rank = columns ? 2 : 1;
   const std::array<hsize_t, 2> now{0, columns}, most{H5S_UNLIMITED, columns}, chunk{chunk_rows, columns};
@@ -148,6 +157,16 @@ void Table::write(hsize_t at, hsize_t count, hid_t memory_type, const void* rows
   select_rows(file_space, at, count, columns_);
   const Handle memory_space = row_space(count, columns_);
   check(H5Dwrite(dataset_.get(), memory_type, memory_space.get(), file_space.get(), H5P_DEFAULT, rows), what);
+}
+
+void Table::cut(hsize_t rows) {
+  const std::string what = "cannot cut " + name_;
+  const Handle space(H5Dget_space(dataset_.get()), H5Sclose, what);
+  std::array<hsize_t, 2> extent{};
+  check(H5Sget_simple_extent_dims(space.get(), extent.data(), nullptr), what);
+  if (extent[0] < rows) throw Error(what + ": it has fewer rows");
+  extent[0] = rows_ = rows;
+  check(H5Dset_extent(dataset_.get(), extent.data()), what);
 }
 
 void put_view(hid_t group, const std::string& name, const Table& table, const std::string& source,

@@ -46,6 +46,8 @@ void silence();
 /// Throws Error when `status` says that the call failed.
 void check(herr_t status, const std::string& what);
 
+bool exists(hid_t parent, const std::string& name);
+/// Opens it if it is there.
 Handle create_group(hid_t parent, const std::string& name);
 
 /// Scalar or one-dimensional attribute; one that exists is overwritten in place and must have the same shape.
@@ -69,6 +71,7 @@ enum class Storage {
 class Table {
  public:
   Table() = default;
+  /// One of the same name that is there is opened; `cut` must then tell its rows.
   Table(hid_t group, const std::string& name, hid_t type, hsize_t columns, hsize_t chunk_rows,
         Storage storage);
 
@@ -77,6 +80,9 @@ class Table {
   void append(hsize_t count, hid_t memory_type, const void* rows) { write(rows_, count, memory_type, rows); }
   void append(long long value) { append(1, H5T_NATIVE_LLONG, &value); }
   void append(double value) { append(1, H5T_NATIVE_DOUBLE, &value); }
+
+  /// Forgets all rows but the first `rows`. Throws Error when there are fewer.
+  void cut(hsize_t rows);
 
   hsize_t rows() const { return rows_; }
   hsize_t columns() const { return columns_; }

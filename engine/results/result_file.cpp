@@ -1,5 +1,7 @@
 #include "engine/results/result_file.hpp"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
@@ -12,6 +14,7 @@
 #include "engine/results/series.hpp"
 #include "engine/results/vtkhdf.hpp"
 #include "engine/results/xdmf.hpp"
+#include "engine/run/archive.hpp"
 
 namespace quicksand {
 namespace {
@@ -38,13 +41,8 @@ constexpr unsigned group_leaf_k = 16, group_tree_k = 16;
 // Room for the names in /frames (8 bytes each), so that their heap does not move as it grows.
 constexpr std::size_t frame_names_bytes = 16 * 1024;
 
-h5::Handle create_file(const std::string& path) {
-  const std::string what = "cannot create the file";
-  const h5::Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose, what);
-  h5::check(H5Pset_sym_k(creation.get(), group_tree_k, group_leaf_k), what);
-  h5::check(H5Pset_obj_track_times(creation.get(), false), what);
-
-  const h5::Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, what);
+h5::Handle file_access(const std::string& what) {
+  h5::Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, what);
   // The oldest format: the newer ones mark the file as open, and after a kill it could not be opened again.
   h5::check(H5Pset_libver_bounds(access.get(), H5F_LIBVER_EARLIEST, H5F_LIBVER_LATEST), what);
   h5::check(H5Pset_file_locking(access.get(), false, true), what);  // others may read what is flushed
@@ -56,6 +54,20 @@ h5::Handle create_file(const std::string& path) {
   cache.max_size = std::max(cache.max_size, metadata_cache_bytes);
   cache.decr_mode = H5C_decr__off;
   h5::check(H5Pset_mdc_config(access.get(), &cache), what);
+  return access;
+}
+
+h5::Handle open_file(const std::string& path) {
+  const std::string what = "cannot open the file";
+  return h5::Handle(H5Fopen(path.c_str(), H5F_ACC_RDWR, file_access(what).get()), H5Fclose, what);
+}
+
+h5::Handle create_file(const std::string& path) {
+  const std::string what = "cannot create the file";
+  const h5::Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose, what);
+  h5::check(H5Pset_sym_k(creation.get(), group_tree_k, group_leaf_k), what);
+  h5::check(H5Pset_obj_track_times(creation.get(), false), what);
+  const h5::Handle access = file_access(what);
   return h5::Handle(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation.get(), access.get()), H5Fclose, what);
 }
 
@@ -93,6 +105,13 @@ void finish_name(const fs::path& folder, const char* name) {
   if (error) throw std::runtime_error(std::string("cannot rename ") + name + ": " + error.message());
 }
 
+/// Undoes that, where it was done.
+void unfinish_name(const fs::path& folder, const std::string& name) {
+  std::error_code none;
+  if (!fs::exists(folder / (name + unfinished), none))
+    fs::rename(folder / name, folder / (name + unfinished), none);
+}
+
 /// Runs `work`; what it throws about the disk leaves with the file's name in front.
 template <class Work>
 void naming_the_file(Work&& work) {
@@ -108,15 +127,41 @@ void naming_the_file(Work&& work) {
 
 }  // namespace
 
+std::string run_identity(const std::map<std::string, std::string>& documents) {
+  std::string identity;
+  for (const char* name : {"engine_version", "case_resolved"})
+    if (const auto document = documents.find(name); document != documents.end())
+      identity += document->second + "\n";
+  return identity;
+}
+
+void remove_result_files(const std::string& folder) {
+  for (const char* name : {data_name, view_name})
+    for (const char* ending : {"", unfinished}) fs::remove(fs::path(folder) / (std::string(name) + ending));
+  remove_checkpoints(folder);
+}
+
 struct ResultFile::State {
   fs::path folder;
+  std::string identity;
   h5::Handle file, run, frames;
   std::optional<Vtkhdf> vtkhdf;
   std::optional<SeriesTables> series;
   std::optional<Xdmf> xdmf;
-  bool broken = false;  // a write failed halfway: nothing more may follow it
+  std::optional<std::size_t> samples;  // that a file which was opened keeps
+  bool broken = false;                 // a write failed halfway: nothing more may follow it
 
-  State(const std::string& to, const std::map<std::string, std::string>& documents) : folder(to) {
+  State(const std::string& to, const std::map<std::string, std::string>& documents,
+        const StoredCheckpoint* resume)
+      : folder(to), identity(run_identity(documents)) {
+    if (resume)
+      reopen(*resume);
+    else
+      create(documents);
+  }
+
+  void create(const std::map<std::string, std::string>& documents) {
+    remove_checkpoints(folder);
     file = create_file((folder / (std::string(data_name) + unfinished)).string());
     std::size_t bytes = 0;
     for (const auto& [name, text] : documents) bytes += text.size() + bookkeeping_bytes;
@@ -128,6 +173,29 @@ struct ResultFile::State {
     });
     // The view names the finished file: whoever rescues a killed run drops ".part" from both names.
     xdmf.emplace((folder / (std::string(view_name) + unfinished)).string(), data_name);
+  }
+
+  /// Opens what an interrupted run left and forgets what came after the checkpoint. A kill meanwhile leaves
+  /// it able to be cut again: what the checkpoint counts is never written to.
+  void reopen(const StoredCheckpoint& from) {
+    for (const char* name : {data_name, view_name}) unfinish_name(folder, name);
+    Loader results(from.results);
+    Vtkhdf::Extent extent;
+    results(extent);
+    file = open_file((folder / (std::string(data_name) + unfinished)).string());
+    run = h5::create_group(file.get(), "run");
+    frames = h5::create_group(file.get(), "frames");
+    vtkhdf.emplace(file.get());
+    vtkhdf->cut(extent);
+    for (std::size_t i = from.run.frames; h5::exists(frames.get(), frame_name(i)); ++i)
+      h5::check(H5Ldelete(frames.get(), frame_name(i).c_str(), H5P_DEFAULT), "cannot cut the frames");
+    samples = from.run.samples;
+    xdmf.emplace((folder / (std::string(view_name) + unfinished)).string(), data_name, from.run.frames);
+  }
+
+  void to_disk() const {
+    if (fsync(descriptor(file)) != 0) throw std::runtime_error("cannot write the results to the disk");
+    xdmf->to_disk();
   }
 
   void flush() { h5::check(H5Fflush(file.get(), H5F_SCOPE_LOCAL), "cannot flush"); }
@@ -173,8 +241,9 @@ struct ResultFile::State {
   }
 };
 
-ResultFile::ResultFile(const std::string& folder, const std::map<std::string, std::string>& documents) {
-  naming_the_file([&] { state_ = std::make_unique<State>(folder, documents); });
+ResultFile::ResultFile(const std::string& folder, const std::map<std::string, std::string>& documents,
+                       const StoredCheckpoint* resume) {
+  naming_the_file([&] { state_ = std::make_unique<State>(folder, documents, resume); });
 }
 
 ResultFile::~ResultFile() {
@@ -185,7 +254,10 @@ ResultFile::~ResultFile() {
 void ResultFile::begin(const std::vector<SeriesInfo>& series) {
   naming_the_file([&] {
     const std::size_t bytes = (series.size() + 1) * chunk_of_series_bytes;
-    state_->store(bytes, [&] { state_->series.emplace(state_->file.get(), series); });
+    state_->store(bytes, [&] {
+      state_->series.emplace(state_->file.get(), series);
+      if (state_->samples) state_->series->cut(*state_->samples);
+    });
   });
 }
 
@@ -203,6 +275,21 @@ void ResultFile::sample(double time, const std::vector<double>& values) {
     if (state_->series->kept() >= most_kept_samples)
       state_->store(bookkeeping_bytes, [&] { state_->series->store(); });
   });
+}
+
+void ResultFile::checkpoint(const Checkpoint& checkpoint) {
+  naming_the_file([&] {
+    state_->store(bookkeeping_bytes, [&] { state_->series->store(); });
+    state_->to_disk();
+  });
+  Saver results;
+  Vtkhdf::Extent extent = state_->vtkhdf->extent();
+  results(extent);
+  StoredCheckpoint stored{state_->identity, results.bytes, checkpoint};
+  try {
+    store_checkpoint(state_->folder, stored);
+  } catch (const std::runtime_error&) {  // the one before serves
+  }
 }
 
 void ResultFile::document(const std::string& name, const std::string& text) {

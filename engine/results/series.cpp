@@ -24,7 +24,7 @@ SeriesTables::SeriesTables(hid_t file, const std::vector<SeriesInfo>& series)
     if (values_.empty()) {
       time_ = h5::Table(group.get(), "time", H5T_IEEE_F64LE, 0, samples_per_chunk, h5::Storage::in_place);
       h5::put_attribute(time_.id(), "unit", std::string("s"));
-    } else {
+    } else if (!h5::exists(group.get(), "time")) {
       h5::check(H5Olink(time_.id(), group.get(), "time", H5P_DEFAULT, H5P_DEFAULT), "cannot link time");
     }
     const hsize_t columns = info.components == 1 ? 0 : static_cast<hsize_t>(info.components);
@@ -33,6 +33,12 @@ SeriesTables::SeriesTables(hid_t file, const std::vector<SeriesInfo>& series)
     h5::put_attribute(values_.back().id(), "unit", info.unit);
     width_ += static_cast<std::size_t>(info.components);
   }
+}
+
+void SeriesTables::cut(std::size_t samples) {
+  if (values_.empty()) return;
+  time_.cut(samples);
+  for (h5::Table& table : values_) table.cut(samples);
 }
 
 void SeriesTables::sample(double time, const std::vector<double>& values) {

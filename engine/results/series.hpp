@@ -10,13 +10,15 @@ namespace quicksand {
 /// sampled together, so their `time` is one dataset under many names.
 class SeriesTables {
  public:
-  /// A name with '/' is a std::logic_error.
+  /// Opens what is there. A name with '/' is a std::logic_error.
   SeriesTables(hid_t file, const std::vector<SeriesInfo>& series);
 
   /// Keeps one sample in memory; `values` holds every series' components one after the other.
   void sample(double time, const std::vector<double>& values);
   /// Appends the kept samples to the file.
   void store();
+  /// Of groups that were opened: forgets all samples but the first ones.
+  void cut(std::size_t samples);
   std::size_t count() const { return values_.size(); }
   std::size_t kept() const { return times_.size(); }
   /// Bytes that one sample takes in the file.

@@ -58,8 +58,37 @@ Vtkhdf::Vtkhdf(hid_t file)
   h5::put_attribute(steps_.get(), "NSteps", std::vector<long long>{0});
 }
 
-void Vtkhdf::create_bulk(const Frame& frame) {
-  chunk_rows_ = chunk_for(frame.points());
+template <class F>
+void Vtkhdf::for_tables(F&& f) {
+  for (h5::Table* table : {&number_of_points_, &values_, &number_of_parts_, &part_offsets_, &point_offsets_,
+                           &cell_offsets_, &id_offsets_})
+    f(*table);
+  if (chunk_rows_ == 0) return;
+  f(*points_);
+  for (Cells& cells : cells_)
+    for (h5::Table* table :
+         {&cells.connectivity, &cells.offsets, &cells.number_of_cells, &cells.number_of_ids})
+      f(*table);
+  for (auto& [name, table] : arrays_) f(table);
+  for (auto& [name, table] : array_offsets_) f(table);
+}
+
+Vtkhdf::Extent Vtkhdf::extent() {
+  Extent extent{described_, chunk_rows_, frames_, {}};
+  for_tables([&](h5::Table& table) { extent.rows.push_back(table.rows()); });
+  return extent;
+}
+
+void Vtkhdf::cut(const Extent& to) {
+  chunk_rows_ = to.chunk_rows;
+  frames_ = to.frames;
+  if (chunk_rows_ > 0) create_bulk(to.fields);
+  std::size_t next = 0;
+  for_tables([&](h5::Table& table) { table.cut(to.rows.at(next++)); });
+  h5::put_attribute(steps_.get(), "NSteps", std::vector<long long>{frames_});
+}
+
+void Vtkhdf::create_bulk(const std::vector<FrameField>& fields) {
   for (const char* kind : cell_kinds) {
     const bool used = cells_.empty();  // the vertices come first
     const auto storage = used ? Storage::packed : Storage::in_place;
@@ -83,7 +112,7 @@ void Vtkhdf::create_bulk(const Frame& frame) {
   };
   add("phase", H5T_STD_U8LE, 0, "0 solid, 1 water");
   add("body", H5T_STD_I32LE, 0, "index into bodies");
-  for (const FrameField& field : frame.fields) {
+  for (const FrameField& field : fields) {
     add(field.name, H5T_IEEE_F32LE, columns_of(field), field.unit);
     described_.push_back({field.name, field.unit, field.components, {}});
   }
@@ -103,7 +132,10 @@ void Vtkhdf::require_same_fields(const Frame& frame) const {
 }
 
 Vtkhdf::Rows Vtkhdf::append(const Frame& frame) {
-  if (chunk_rows_ == 0) create_bulk(frame);
+  if (chunk_rows_ == 0) {
+    chunk_rows_ = chunk_for(frame.points());
+    create_bulk(frame.fields);
+  }
   require_same_fields(frame);
   Rows rows;
   rows.count = frame.points();

@@ -22,10 +22,26 @@ class Vtkhdf {
     long long cells = 0;  ///< the frame's Steps/CellOffsets of vertices
   };
 
+  /// Opens the group if it is there.
   explicit Vtkhdf(hid_t file);
 
   /// The first frame fixes the fields; a later one with others is a std::logic_error.
   Rows append(const Frame& frame);
+
+  /// What of it is not in the file, or would have to be found out.
+  struct Extent {
+    std::vector<FrameField> fields;  ///< without values
+    hsize_t chunk_rows = 0;          ///< 0: no frame yet
+    long long frames = 0;
+    std::vector<hsize_t> rows;  ///< of each table
+    template <class A>
+    void keep(A& a) {
+      a(fields, chunk_rows, frames, rows);
+    }
+  };
+  Extent extent();
+  /// Of a group that was opened: forgets what came after.
+  void cut(const Extent& to);
 
   /// Makes `group` show the frame's rows: position, phase, body, every field, vertex.
   void put_views(hid_t group, const Rows& rows) const;
@@ -36,7 +52,10 @@ class Vtkhdf {
     h5::Table connectivity, offsets, number_of_cells, number_of_ids;
   };
 
-  void create_bulk(const Frame& frame);
+  void create_bulk(const std::vector<FrameField>& fields);
+  /// f(table) for every table, in a fixed order.
+  template <class F>
+  void for_tables(F&& f);
   void require_same_fields(const Frame& frame) const;
   void append_vertices(Rows& rows);
   void append_step(const Frame& frame, const Rows& rows);

@@ -3,7 +3,9 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
+#include <fstream>
 #include <sstream>
 #include <stdexcept>
 #include <system_error>
@@ -44,12 +46,13 @@ std::string attribute(const std::string& name, const std::string& source, std::s
          "\" Center=\"Node\">" + data_item(source + name, points, item) + "</Attribute>\n";
 }
 
+std::string frame_mark(std::size_t index) { return "<Grid Name=\"frame" + std::to_string(index) + "\""; }
+
 std::string grid(const Frame& frame, const std::string& source) {
   const std::size_t n = frame.points();
   std::ostringstream out;
   out.precision(17);
-  out << "<Grid Name=\"frame" << frame.index << "\" GridType=\"Uniform\"><Time Value=\"" << frame.time
-      << "\"/>\n"
+  out << frame_mark(frame.index) << " GridType=\"Uniform\"><Time Value=\"" << frame.time << "\"/>\n"
       << "<Topology TopologyType=\"Polyvertex\" NumberOfElements=\"" << n << "\" NodesPerElement=\"1\">";
   if (n == 0) {  // ParaView's readers complain of empty data, not of absent data
     out << "</Topology>\n<Geometry GeometryType=\"XYZ\"/></Grid>\n";
@@ -74,6 +77,27 @@ Xdmf::Xdmf(const std::string& path, const std::string& data_name) : data_name_(d
   file_ = open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
   if (file_ < 0) throw std::runtime_error("cannot create the xdmf file: " + reason(-1));
   put(opening);
+}
+
+Xdmf::Xdmf(const std::string& path, const std::string& data_name, std::size_t frames)
+    : data_name_(data_name) {
+  std::stringstream text;
+  text << std::ifstream(path).rdbuf();
+  const std::string whole = text.str();
+  const auto at = [&](const std::string& mark) { return std::min(whole.find(mark), whole.size()); };
+  const std::size_t end = std::min(at(frame_mark(frames)), at(closing));
+  if (end == whole.size() || (frames > 0 && at(frame_mark(frames - 1)) == whole.size()))
+    throw std::runtime_error("the xdmf file ends too soon");
+  file_ = open(path.c_str(), O_WRONLY | O_CLOEXEC);
+  end_ = static_cast<long>(end);
+  if (file_ < 0) throw std::runtime_error("cannot open the xdmf file: " + reason(-1));
+  put("");
+  if (ftruncate(file_, end_ + static_cast<long>(std::string_view(closing).size())) != 0)
+    throw std::runtime_error("cannot cut the xdmf file: " + reason(-1));
+}
+
+void Xdmf::to_disk() const {
+  if (fsync(file_) != 0) throw std::runtime_error("cannot write the xdmf file: " + reason(-1));
 }
 
 Xdmf::~Xdmf() {

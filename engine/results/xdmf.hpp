@@ -12,12 +12,15 @@ class Xdmf {
  public:
   /// Creates `path`; `data_name` is the name of the HDF5 file beside it.
   Xdmf(const std::string& path, const std::string& data_name);
+  /// Opens one that is there and keeps its first `frames` frames.
+  Xdmf(const std::string& path, const std::string& data_name, std::size_t frames);
   ~Xdmf();
   Xdmf(const Xdmf&) = delete;
   Xdmf& operator=(const Xdmf&) = delete;
 
   /// `group` is the frame's group, e.g. "/frames/000042".
   void add(const Frame& frame, const std::string& group);
+  void to_disk() const;
 
  private:
   void put(const std::string& text);

@@ -18,6 +18,10 @@ struct FrameField {
   std::string unit;
   int components = 1;  ///< 1, 3 (vectors, third zero in the plane) or 4/6 (xx yy zz xy [yz zx])
   std::vector<float> values;
+  template <class A>
+  void keep(A& a) {
+    a(name, unit, components, values);
+  }
 };
 
 /// State of all points at one time: moving grains, fixed grains, water, each in the order in which they were
@@ -44,6 +48,10 @@ struct Checkpoint {
   std::string state;
   std::size_t frames = 0, samples = 0;  ///< that reached the sink before it
   double time = 0;                      ///< s
+  template <class A>
+  void keep(A& a) {
+    a(state, frames, samples, time);
+  }
 };
 
 /// Receives results as the run goes. Called from one thread, in order of time. Implementations throw

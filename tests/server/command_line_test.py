@@ -4,8 +4,12 @@ import copy
 import json
 import os
 import re
+import signal
+import subprocess
+import time
 
-from server_test import RESULT_NAMES, SMALL_CASE, ServerTest, assert_same_frames, endless_case, main, quicksand, small_case
+from server_test import (EXECUTABLE, RESULT_NAMES, SMALL_CASE, ServerTest, assert_same_frames, endless_case, main,
+                         quicksand, small_case)
 
 
 class CommandLineTest(ServerTest):
@@ -122,6 +126,33 @@ class CommandLineTest(ServerTest):
         self.assertIn("ended: canceled", log.stdout)
         self.assertEqual(self.client("delete", run_id).returncode, 0)
         self.assertEqual(self.client("log", run_id).returncode, 1)
+
+    def test_a_stopped_run_can_be_resumed(self):
+        case = small_case()
+        case["stages"][0]["duration"] = 2.0
+        path, out = os.path.join(self.folder, "long.json"), os.path.join(self.folder, "stopped")
+        with open(path, "w") as file:
+            json.dump(case, file)
+        running = subprocess.Popen([EXECUTABLE, "run", path, "--out", out], stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        time.sleep(0.4)
+        running.send_signal(signal.SIGTERM)
+        said = running.communicate(timeout=10)[0].decode()
+        self.assertEqual(running.returncode, 1)
+        self.assertIn("suspended", said)
+        self.assertIn("--resume", said)
+        self.assertEqual(quicksand("run", path, "--out", out).returncode, 3)  # it would replace that run
+        other = quicksand("run", SMALL_CASE, "--out", out, "--resume")
+        self.assertEqual(other.returncode, 2)
+        self.assertIn("another case", other.stderr)
+        done = quicksand("run", path, "--out", out, "--resume")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(sorted(os.listdir(out)), RESULT_NAMES)
+        again = os.path.join(self.folder, "straight")
+        self.assertEqual(quicksand("run", path, "--out", again).returncode, 0)
+        assert_same_frames(self, *(os.path.join(folder, "result.vtkhdf") for folder in (out, again)))
+        none = quicksand("run", path, "--out", again, "--resume")  # it has ended
+        self.assertEqual(none.returncode, 2)
+        self.assertIn("no checkpoint", none.stderr)
 
     def test_submit_tells_what_is_wrong(self):
         bad = self.client("submit", self.bad_case())

@@ -59,22 +59,34 @@ class RestartTest(ServerTest):
         self.assertEqual(run["retries"], 1)
         self.assertEqual(self.server.get(f"/v1/runs/{running}/results").json(), {"results": []})
 
-        time.sleep(0.5)
-        self.server.kill()  # the second time it is given up, and the next one gets its turn
-        self.server.start()
-        run = self.server.get(f"/v1/runs/{running}").json()
-        self.assertEqual((run["status"], run["failure"]["code"]), ("failed", "interrupted"))
-        self.assertEqual(self.server.get(f"/v1/runs/{running}/results").json(), {"results": []})
+        self.cancel(running)
         self.assertEqual(self.server.wait_for(queued, "succeeded")["retries"], 0)
 
-    def test_a_restarted_run_gives_the_same_frames(self):
+    def wait_for_checkpoint(self, run_id):
+        """On disk, and after the server's own start."""
+        checkpoint = os.path.join(self.state, "runs", run_id, "checkpoint")
+        begin, deadline = time.time(), time.monotonic() + 30
+        while time.monotonic() < deadline:
+            if os.path.exists(checkpoint) and os.path.getmtime(checkpoint) > begin:
+                return
+            time.sleep(0.02)
+        self.fail("no checkpoint after 30 s")
+
+    def log_of(self, run_id):
+        with open(os.path.join(self.state, "runs", run_id, "run.log")) as log:
+            return log.read()
+
+    def test_a_killed_run_goes_on_to_the_same_frames(self):
         case = small_case()
-        case["stages"][0]["duration"] = 0.5
+        case["stages"][0]["duration"] = 2.0
         run_id = self.submit(case)
-        self.server.wait_for(run_id, "running")
-        self.server.kill()
-        self.server.start()
-        self.server.wait_for(run_id, "succeeded")
+        for end in (self.server.kill, self.server.stop, self.server.kill):
+            self.wait_for_checkpoint(run_id)
+            end()
+            self.server.start()
+        self.server.wait_for(run_id, "succeeded", seconds=120)
+        self.assertGreaterEqual(self.log_of(run_id).count("resumed at"), 2)
+        self.assertNotIn("checkpoint", os.listdir(os.path.join(self.state, "runs", run_id)))
         again = self.finished(case)
         files = [os.path.join(self.state, "runs", name, "result.vtkhdf") for name in (run_id, again)]
         assert_same_frames(self, *files)

@@ -170,7 +170,8 @@ TEST_F(StoreTest, RecoversWhatAKillLeftBehind) {
   store_.request_cancel(canceling);
 
   Store restarted(file_, [this] { return now_; });
-  const Recovery first = restarted.recover();
+  const auto standing_still = [](const StoredRun&) { return false; };
+  const Recovery first = restarted.recover(standing_still);
   EXPECT_EQ(first.requeued, std::vector<std::string>{running});
   EXPECT_EQ(first.canceled, std::vector<std::string>{canceling});
   EXPECT_EQ(state(running), RunState::queued);
@@ -179,11 +180,25 @@ TEST_F(StoreTest, RecoversWhatAKillLeftBehind) {
   EXPECT_EQ(state(canceling), RunState::canceled);
   EXPECT_EQ(state(queued), RunState::queued);
 
+  for (int retries = 1; retries < Store::most_fruitless - 1; ++retries) {
+    EXPECT_EQ(store_.find(running)->retries, retries);
+    EXPECT_EQ(restarted.claim_next()->id, running);
+    EXPECT_EQ(restarted.recover(standing_still).requeued, std::vector<std::string>{running});
+  }
   EXPECT_EQ(restarted.claim_next()->id, running);
-  const Recovery second = restarted.recover();
-  EXPECT_EQ(second.interrupted, std::vector<std::string>{running});
+  EXPECT_EQ(restarted.recover(standing_still).interrupted, std::vector<std::string>{running});
   EXPECT_EQ(state(running), RunState::failed);
   EXPECT_EQ(store_.find(running)->failure->code, "interrupted");
+}
+
+TEST_F(StoreTest, ARunThatGetsFurtherIsNeverGivenUp) {
+  const std::string running = queue("a");
+  for (int i = 0; i < 3 * Store::most_fruitless; ++i) {
+    store_.claim_next();
+    EXPECT_EQ(store_.recover([](const StoredRun&) { return true; }).requeued,
+              std::vector<std::string>{running});
+    EXPECT_EQ(store_.find(running)->retries, 1);
+  }
 }
 
 TEST_F(StoreTest, AnOrderlyStopCostsNoRetry) {

@@ -1,4 +1,4 @@
-#include "server/result_reader.hpp"
+#include "engine/results/result_reader.hpp"
 
 #include <algorithm>
 #include <array>
