@@ -103,6 +103,13 @@ MohrCoulombReturn return_map(const MohrCoulomb& law, const Elastic& e, const std
   return return_to_cutoff(law, e, trial);
 }
 
+FaceReturn FaceReturn::of(const MohrCoulomb& law, const Elastic& e) {
+  const Face main{0, 2};
+  const auto direction = flow(law, main);
+  return {stress_of(e, direction), 1 / stiffness(law, e, main, main),
+          std::sqrt(2.0 / 3.0 * contracted(deviator(direction)))};
+}
+
 MohrCoulombLaw MohrCoulombLaw::from(const SoilModel& m) {
   constexpr double kRadians = std::numbers::pi / 180;
   MohrCoulombLaw law;
@@ -116,6 +123,7 @@ MohrCoulombLaw MohrCoulombLaw::from(const SoilModel& m) {
     law.residual_cohesion = *m.residual_cohesion;
     law.softening_strain = m.softening_strain;
   }
+  law.face = FaceReturn::of(law.peak, law.elastic);
   return law;
 }
 

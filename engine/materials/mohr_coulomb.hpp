@@ -40,6 +40,15 @@ MohrCoulombReturn return_map(const MohrCoulomb& law, const Elastic& elastic,
 MohrCoulombReturn return_to_cutoff(const MohrCoulomb& law, const Elastic& elastic,
                                    const std::array<double, 3>& trial);
 
+/// The return onto the face σ1–σ3 where it ends there, as it mostly does: what does not depend on the trial.
+struct FaceReturn {
+  std::array<double, 3> drop{};  ///< Pa, of the stress per plastic multiplier
+  double compliance = 0;         ///< 1/Pa, plastic multiplier per excess over yield; 0: unknown
+  double shear = 0;              ///< –, √(2/3 e:e) per plastic multiplier
+
+  static FaceReturn of(const MohrCoulomb& law, const Elastic& elastic);
+};
+
 /// Linear elastic, perfectly plastic or with cohesion that softens: linearly from `cohesion` to
 /// `residual_cohesion` while the accumulated plastic shear strain Σ √(2/3 e:e) grows to `softening_strain`.
 /// A step takes the cohesion at its start. Softening concentrates strain in bands one cell wide, so that what
@@ -50,6 +59,7 @@ struct MohrCoulombLaw {
   MohrCoulomb peak;
   double residual_cohesion = 0;  ///< Pa
   double softening_strain = 0;   ///< –; 0: cohesion stays
+  FaceReturn face;               ///< the same for every cohesion
 
   static MohrCoulombLaw from(const SoilModel& model);
   static void check(const SoilModel& model, ModelFaults& faults);
@@ -75,7 +85,8 @@ struct MohrCoulombLaw {
   int update(SoilState<D>& state, const Strain<D>& strain, double /*porosity*/) const {
     state.stress = elastic.stretched(state.stress, strain);
     const MohrCoulomb now = strength(state.plastic_strain);
-    if (!surely_inside(now, principal_bounds<D>(state.stress))) yield(now, state);
+    if (surely_inside(now, principal_bounds<D>(state.stress))) return 0;
+    if (D != 2 || !yield_at_face(now, state)) yield(now, state);
     return 0;
   }
   template <int D>
@@ -88,6 +99,22 @@ struct MohrCoulombLaw {
   static bool surely_inside(const MohrCoulomb& law, const PrincipalBounds& s) {
     return s.largest * (1 + law.sin_phi) - s.smallest * (1 - law.sin_phi) <= 2 * law.cohesion * law.cos_phi &&
            s.largest <= law.tension;
+  }
+  /// Does what `yield` does where the return ends on the face σ1–σ3; false where it does not.
+  template <int D>
+  bool yield_at_face(const MohrCoulomb& now, SoilState<D>& state) const {
+    const Principal<D> trial = principal(state.stress);
+    const std::array<double, 3>& s = trial.value;
+    const double excess =
+        s[0] * (1 + now.sin_phi) - s[2] * (1 - now.sin_phi) - 2 * now.cohesion * now.cos_phi;
+    const double gamma = excess * face.compliance;
+    const std::array<double, 3> back{s[0] - gamma * face.drop[0], s[1] - gamma * face.drop[1],
+                                     s[2] - gamma * face.drop[2]};
+    const bool on_face = gamma > 0 && back[0] >= back[1] && back[1] >= back[2] && back[0] <= now.tension;
+    if (!on_face || (now.sin_phi > 0 && back[2] * now.sin_phi > now.cohesion * now.cos_phi)) return false;
+    state.stress = with_values(trial, back);
+    state.plastic_strain += gamma * face.shear;
+    return true;
   }
   /// Brings a trial stress back, if it yields.
   template <int D>

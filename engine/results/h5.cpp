@@ -147,30 +147,40 @@ Table::Table(hid_t group, const std::string& name, hid_t type, hsize_t columns, 
              H5Dclose, what);
 }
 
+void Table::set_extent(hsize_t rows) {
+  const std::array<hsize_t, 2> extent{rows, columns_};
+  check(H5Dset_extent(dataset_.get(), extent.data()), "cannot write " + name_);
+  extent_ = rows;
+}
+
 void Table::write(hsize_t at, hsize_t count, hid_t memory_type, const void* rows) {
   if (count == 0) return;
   const std::string what = "cannot write " + name_;
-  const std::array<hsize_t, 2> extent{std::max(rows_, at + count), columns_};
-  check(H5Dset_extent(dataset_.get(), extent.data()), what);
-  rows_ = extent[0];
+  rows_ = std::max(rows_, at + count);
+  if (rows_ > extent_) set_extent(rows_);
   const Handle file_space(H5Dget_space(dataset_.get()), H5Sclose, what);
   select_rows(file_space, at, count, columns_);
   const Handle memory_space = row_space(count, columns_);
   check(H5Dwrite(dataset_.get(), memory_type, memory_space.get(), file_space.get(), H5P_DEFAULT, rows), what);
 }
 
-void Table::cut(hsize_t rows) {
-  const std::string what = "cannot cut " + name_;
+void Table::go_back(hsize_t rows) {
+  const std::string what = "cannot read " + name_;
   const Handle space(H5Dget_space(dataset_.get()), H5Sclose, what);
   std::array<hsize_t, 2> extent{};
   check(H5Sget_simple_extent_dims(space.get(), extent.data(), nullptr), what);
   if (extent[0] < rows) throw Error(what + ": it has fewer rows");
-  extent[0] = rows_ = rows;
-  check(H5Dset_extent(dataset_.get(), extent.data()), what);
+  extent_ = extent[0];
+  rows_ = rows;
+}
+
+void Table::trim() {
+  if (extent_ > rows_) set_extent(rows_);
 }
 
 void put_view(hid_t group, const std::string& name, const Table& table, const std::string& source,
               hsize_t from, hsize_t count) {
+  if (exists(group, name)) return;
   const std::string what = "cannot create view " + name;
   const Handle properties = dataset_properties();
   const Handle view_space = row_space(count, table.columns());

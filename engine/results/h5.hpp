@@ -71,7 +71,7 @@ enum class Storage {
 class Table {
  public:
   Table() = default;
-  /// One of the same name that is there is opened; `cut` must then tell its rows.
+  /// One of the same name that is there is opened; `go_back` must then tell its rows.
   Table(hid_t group, const std::string& name, hid_t type, hsize_t columns, hsize_t chunk_rows,
         Storage storage);
 
@@ -81,21 +81,27 @@ class Table {
   void append(long long value) { append(1, H5T_NATIVE_LLONG, &value); }
   void append(double value) { append(1, H5T_NATIVE_DOUBLE, &value); }
 
-  /// Forgets all rows but the first `rows`. Throws Error when there are fewer.
-  void cut(hsize_t rows);
+  /// Only the first `rows` count from here on; those behind are written over where they lie. Throws Error
+  /// when there are fewer.
+  void go_back(hsize_t rows);
+  /// Removes rows that do not count. The file may become shorter, and a kill meanwhile spoil it.
+  void trim();
 
   hsize_t rows() const { return rows_; }
   hsize_t columns() const { return columns_; }
   hid_t id() const { return dataset_.get(); }
 
  private:
+  void set_extent(hsize_t rows);
+
   Handle dataset_;
   std::string name_;
   hsize_t columns_ = 0, rows_ = 0;
+  hsize_t extent_ = 0;  // rows in the file
 };
 
 /// `count` rows of the table from row `from` on, as a dataset of its own without copying them (a virtual
-/// dataset into `source`, the table's absolute path in the same file).
+/// dataset into `source`, the table's absolute path in the same file). One of the name that is there stays.
 void put_view(hid_t group, const std::string& name, const Table& table, const std::string& source,
               hsize_t from, hsize_t count);
 

@@ -175,8 +175,8 @@ struct ResultFile::State {
     xdmf.emplace((folder / (std::string(view_name) + unfinished)).string(), data_name);
   }
 
-  /// Opens what an interrupted run left and forgets what came after the checkpoint. A kill meanwhile leaves
-  /// it able to be cut again: what the checkpoint counts is never written to.
+  /// Opens what an interrupted run left. What came after the checkpoint is not cut off, as a kill between two
+  /// writes of a file that becomes shorter would spoil it: the run writes the same over it, bit for bit.
   void reopen(const StoredCheckpoint& from) {
     for (const char* name : {data_name, view_name}) unfinish_name(folder, name);
     Loader results(from.results);
@@ -186,9 +186,7 @@ struct ResultFile::State {
     run = h5::create_group(file.get(), "run");
     frames = h5::create_group(file.get(), "frames");
     vtkhdf.emplace(file.get());
-    vtkhdf->cut(extent);
-    for (std::size_t i = from.run.frames; h5::exists(frames.get(), frame_name(i)); ++i)
-      h5::check(H5Ldelete(frames.get(), frame_name(i).c_str(), H5P_DEFAULT), "cannot cut the frames");
+    vtkhdf->go_back(extent);
     samples = from.run.samples;
     xdmf.emplace((folder / (std::string(view_name) + unfinished)).string(), data_name, from.run.frames);
   }
@@ -229,6 +227,15 @@ struct ResultFile::State {
     vtkhdf->put_views(group.get(), rows);
   }
 
+  /// Frames and samples of an interrupted run that this one, ended sooner, has not reached.
+  void trim() {
+    if (series) series->trim();
+    vtkhdf->trim();
+    for (auto i = static_cast<std::size_t>(vtkhdf->extent().frames); h5::exists(frames.get(), frame_name(i));
+         ++i)
+      h5::check(H5Ldelete(frames.get(), frame_name(i).c_str(), H5P_DEFAULT), "cannot cut the frames");
+  }
+
   void finish() {
     series.reset();
     vtkhdf.reset();
@@ -256,7 +263,7 @@ void ResultFile::begin(const std::vector<SeriesInfo>& series) {
     const std::size_t bytes = (series.size() + 1) * chunk_of_series_bytes;
     state_->store(bytes, [&] {
       state_->series.emplace(state_->file.get(), series);
-      if (state_->samples) state_->series->cut(*state_->samples);
+      if (state_->samples) state_->series->go_back(*state_->samples);
     });
   });
 }
@@ -302,6 +309,7 @@ void ResultFile::close() {
   naming_the_file([&] {
     state_->store(bookkeeping_bytes, [&] {
       if (state_->series) state_->series->store();
+      if (state_->samples) state_->trim();
     });
     state_->finish();
     state_.reset();

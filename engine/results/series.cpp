@@ -35,10 +35,16 @@ SeriesTables::SeriesTables(hid_t file, const std::vector<SeriesInfo>& series)
   }
 }
 
-void SeriesTables::cut(std::size_t samples) {
+void SeriesTables::go_back(std::size_t samples) {
   if (values_.empty()) return;
-  time_.cut(samples);
-  for (h5::Table& table : values_) table.cut(samples);
+  time_.go_back(samples);
+  for (h5::Table& table : values_) table.go_back(samples);
+}
+
+void SeriesTables::trim() {
+  if (values_.empty()) return;
+  time_.trim();
+  for (h5::Table& table : values_) table.trim();
 }
 
 void SeriesTables::sample(double time, const std::vector<double>& values) {

@@ -17,8 +17,9 @@ class SeriesTables {
   void sample(double time, const std::vector<double>& values);
   /// Appends the kept samples to the file.
   void store();
-  /// Of groups that were opened: forgets all samples but the first ones.
-  void cut(std::size_t samples);
+  /// Of groups that were opened: samples after the first ones are written over; and removes what was not.
+  void go_back(std::size_t samples);
+  void trim();
   std::size_t count() const { return values_.size(); }
   std::size_t kept() const { return times_.size(); }
   /// Bytes that one sample takes in the file.

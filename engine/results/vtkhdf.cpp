@@ -79,12 +79,16 @@ Vtkhdf::Extent Vtkhdf::extent() {
   return extent;
 }
 
-void Vtkhdf::cut(const Extent& to) {
+void Vtkhdf::go_back(const Extent& to) {
   chunk_rows_ = to.chunk_rows;
   frames_ = to.frames;
   if (chunk_rows_ > 0) create_bulk(to.fields);
   std::size_t next = 0;
-  for_tables([&](h5::Table& table) { table.cut(to.rows.at(next++)); });
+  for_tables([&](h5::Table& table) { table.go_back(to.rows.at(next++)); });
+}
+
+void Vtkhdf::trim() {
+  for_tables([](h5::Table& table) { table.trim(); });
   h5::put_attribute(steps_.get(), "NSteps", std::vector<long long>{frames_});
 }
 

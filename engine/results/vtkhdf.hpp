@@ -40,8 +40,10 @@ class Vtkhdf {
     }
   };
   Extent extent();
-  /// Of a group that was opened: forgets what came after.
-  void cut(const Extent& to);
+  /// Of a group that was opened: what came after is written over.
+  void go_back(const Extent& to);
+  /// Removes what was not; see Table::trim.
+  void trim();
 
   /// Makes `group` show the frame's rows: position, phase, body, every field, vertex.
   void put_views(hid_t group, const Rows& rows) const;

@@ -82,6 +82,27 @@ TEST_F(CheckpointTest, ResultsAreCutBackAndGoOn) {
   EXPECT_EQ(b.attribute("/VTKHDF/Steps", "NSteps"), known::frames);
 }
 
+TEST_F(CheckpointTest, ARunThatEndsSoonerKeepsNothingOfWhatCameAfter) {
+  {
+    ResultFile first(folder_.string(), documents_);
+    first.begin(known::series());
+    write(first, 0, 2);
+    first.checkpoint(after(2));
+    write(first, 2, known::frames);
+  }
+  const StoredCheckpoint from = read_checkpoint(checkpoint_files(folder_).front());
+  ResultFile rest(folder_.string(), documents_, &from);
+  rest.begin(known::series());
+  write(rest, 2, 4);
+  rest.close();
+  const h5_read::File file((folder_ / "result.vtkhdf").string());
+  EXPECT_EQ(file.attribute("/VTKHDF/Steps", "NSteps"), 4);
+  EXPECT_EQ(column(file, "/series/probe.below/value").size(), 12u);
+  EXPECT_EQ(column(file, "/VTKHDF/Steps/Values").size(), 4u);
+  EXPECT_EQ(column(file, "/frames/000003/position"), known::frame(3).position);
+  EXPECT_ANY_THROW(column(file, "/frames/000004/position"));
+}
+
 TEST_F(CheckpointTest, TheOneBeforeServesWhenTheNewestIsDamaged) {
   for (const char* state : {"first", "second", "third"}) {
     StoredCheckpoint stored{"case", "", {state, 1, 2, 3}};
