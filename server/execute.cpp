@@ -4,12 +4,14 @@
 #include <unistd.h>
 
 #include <array>
+#include <cerrno>
 #include <filesystem>
 #include <fstream>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
+#include <system_error>
 #include <thread>
 
 #include "api/case_json.hpp"
@@ -76,9 +78,13 @@ Opened reopen(const std::string& folder, const Documents& documents, RunMonitor&
   return {};
 }
 
-bool needs_checkpoint(const RunReport& report) {
-  return report.status == RunStatus::suspended ||
-         (report.status == RunStatus::failed && report.failure.code == "output");
+/// Whether a run failed because of what a kill had left of its results.
+bool found_damage(const RunReport& report) {
+  if (report.status != RunStatus::failed || report.failure.code != "output") return false;
+  for (const int reason : {ENOSPC, EDQUOT, EFBIG, EIO})
+    if (report.failure.message.find(std::generic_category().message(reason)) != std::string::npos)
+      return false;
+  return true;
 }
 
 /// Runs a valid scene; exceptions mean that its results could not be stored.
@@ -94,15 +100,21 @@ RunReport run_into(const std::string& folder, const std::string& case_text, cons
     return failed("no_checkpoint",
                   "the folder holds no checkpoint of this case and version; run it from its beginning");
   if (!opened.file) opened.file = std::make_unique<ResultFile>(folder, documents);
-  if (opened.from) options.resume = &opened.from->run;
+  options.resume = opened.from ? &opened.from->run : nullptr;
   std::error_code none;
   std::filesystem::remove(std::filesystem::path(folder) / "run.json", none);  // of a run that was suspended
   RunReport report = run(scene, *opened.file, monitor, options);
+  if (opened.from && found_damage(report)) {
+    monitor.log("the interrupted run's results are damaged; the run starts from its beginning");
+    opened = {};
+    return run_into(folder, case_text, scene, monitor, options, Resume::never);
+  }
+  if (report.status == RunStatus::failed && report.failure.code == "output") return report;
   const std::string text = report_json(scene, plan, report);
   opened.file->document("report", text);
   opened.file->close();
   write_atomically(std::filesystem::path(folder) / "run.json", text);
-  if (!needs_checkpoint(report)) remove_checkpoints(folder);
+  if (report.status != RunStatus::suspended) remove_checkpoints(folder);
   return report;
 }
 

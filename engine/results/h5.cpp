@@ -85,7 +85,18 @@ void check(herr_t status, const std::string& what) {
 }
 
 bool exists(hid_t parent, const std::string& name) {
-  return H5Lexists(parent, name.c_str(), H5P_DEFAULT) > 0;
+  const htri_t found = H5Lexists(parent, name.c_str(), H5P_DEFAULT);
+  check(found, "cannot look for " + name);
+  return found > 0;
+}
+
+void require_whole(hid_t group) {
+  const auto open = [](hid_t in, const char* name, const H5L_info_t*, void*) -> herr_t {
+    const hid_t object = H5Oopen(in, name, H5P_DEFAULT);
+    return object < 0 ? -1 : H5Oclose(object);
+  };
+  hsize_t at = 0;
+  check(H5Literate(group, H5_INDEX_NAME, H5_ITER_INC, &at, open, nullptr), "a kill has damaged a frame");
 }
 
 Handle create_group(hid_t parent, const std::string& name) {

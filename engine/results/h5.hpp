@@ -46,7 +46,10 @@ void silence();
 /// Throws Error when `status` says that the call failed.
 void check(herr_t status, const std::string& what);
 
+/// Throws Error when the group cannot be read.
 bool exists(hid_t parent, const std::string& name);
+/// Throws Error unless every member of the group can be opened.
+void require_whole(hid_t group);
 /// Opens it if it is there.
 Handle create_group(hid_t parent, const std::string& name);
 

@@ -183,10 +183,14 @@ struct ResultFile::State {
     Vtkhdf::Extent extent;
     results(extent);
     file = open_file((folder / (std::string(data_name) + unfinished)).string());
+    // A kill within a flush can leave objects behind the end that the file knows of.
+    h5::check(H5Fincrement_filesize(file.get(), 0), "cannot go on with the file");
     run = h5::create_group(file.get(), "run");
     frames = h5::create_group(file.get(), "frames");
     vtkhdf.emplace(file.get());
     vtkhdf->go_back(extent);
+    for (std::size_t i = from.run.frames; h5::exists(frames.get(), frame_name(i)); ++i)
+      h5::require_whole(h5::create_group(frames.get(), frame_name(i)).get());
     samples = from.run.samples;
     xdmf.emplace((folder / (std::string(view_name) + unfinished)).string(), data_name, from.run.frames);
   }
