@@ -73,7 +73,8 @@ Json to_json(const Ledger& l) {
           {"clipped_points", l.clipped_points},
           {"clamped_values", l.clamped_values},
           {"deleted_points", l.deleted_points},
-          {"cut_steps", l.cut_steps}};
+          {"cut_steps", l.cut_steps},
+          {"retries", l.retries}};
 }
 
 Json to_json(const HeaveReport& h) {

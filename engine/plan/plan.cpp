@@ -98,11 +98,16 @@ void measure(const Scene& scene, Plan& plan) {
   const double per_active_cell =
       follower + fixed + D * (sizeof(FaceSums) + sizeof(FaceImage) + sizeof(FaceFlow) + sizeof(FaceSpeeds)) +
       sizeof(CellSums) + sizeof(CellState) + 2 * sizeof(double);
+  const double kept_per_active_cell =  // of the last good state
+      follower + D * (sizeof(FaceFlow) + sizeof(FaceSpeeds) + 1) + sizeof(CellSums) + sizeof(CellState) +
+      sizeof(double);
   // Flags of walls, for water and for grains, and volumes about an axis.
   const double per_cell = 2 * (5 * D + 1 + sizeof(int)) + (grid.axial ? (D + 1) * sizeof(double) : 0);
-  plan.memory_bytes = per_soil * static_cast<double>(plan.soil_points + plan.fixed_soil_points) +
-                      per_water * static_cast<double>(plan.water_points) +
-                      per_active_cell * static_cast<double>(points.active_cells) + per_cell * grid.count();
+  const double points_bytes = per_soil * static_cast<double>(plan.soil_points + plan.fixed_soil_points) +
+                              per_water * static_cast<double>(plan.water_points);
+  plan.memory_bytes = 2 * points_bytes +
+                      (per_active_cell + kept_per_active_cell) * static_cast<double>(points.active_cells) +
+                      per_cell * grid.count();
 }
 
 void explain(const Scene& scene, Plan& plan) {

@@ -53,7 +53,16 @@ Failure describe(const Scene& scene, const State<D>& s, const std::string& what,
   return f;
 }
 
-std::string step_remedy(const Scene& scene) {
+std::string in_vain(double shortened) {
+  return "Steps down to 1/" + number(1 / shortened) + " as long, from the last good state on, did not help";
+}
+
+std::string step_remedy(const Scene& scene, double shortened = 1) {
+  if (shortened < 1)
+    return in_vain(shortened) +
+           ": the likely cause is not the time step but what acts there (a load, level, plate or gate), or a "
+           "stiffness or strength that cannot bear it. Let it act more slowly (ramp), or change "
+           "domain.cell_size.";
   if (scene.numerics.time_step)
     return "The fixed numerics.time_step of " + number(*scene.numerics.time_step) +
            " s is the likely cause: leave it out, so that stable steps are chosen.";
@@ -65,27 +74,28 @@ std::string step_remedy(const Scene& scene) {
 }  // namespace
 
 template <int D>
-Failure not_finite(const Scene& scene, const State<D>& s) {
+Failure not_finite(const Scene& scene, const State<D>& s, double shortened) {
   return describe(scene, s,
                   "Velocities or stresses stopped being finite numbers, or no time step was short enough",
-                  step_remedy(scene));
+                  step_remedy(scene, shortened));
 }
 
 template <int D>
-Failure collapsed_step(const Scene& scene, const State<D>& s, const StepBound& bound) {
+Failure collapsed_step(const Scene& scene, const State<D>& s, const StepBound& bound, double shortened) {
   return describe(scene, s,
                   "The time step that '" + bound.name + "' allows fell to " + number(bound.seconds) +
                       " s: motion ran away",
-                  step_remedy(scene));
+                  step_remedy(scene, shortened));
 }
 
 template <int D>
-Failure pressure_not_found(const Scene& scene, const State<D>& s, double residual) {
-  return describe(scene, s,
-                  "The water pressure could not be solved for (relative residual " + number(residual) + ")",
-                  "The likely cause is water torn into single drops, or numerics.pressure_tolerance (now " +
-                      number(scene.numerics.pressure_tolerance) +
-                      ") below what rounding allows: raise it to 1e-6 or refine domain.cell_size.");
+Failure pressure_not_found(const Scene& scene, const State<D>& s, double residual, double shortened) {
+  return describe(
+      scene, s, "The water pressure could not be solved for (relative residual " + number(residual) + ")",
+      (shortened < 1 ? in_vain(shortened) + ". " : "") +
+          "The likely cause is water torn into single drops, or numerics.pressure_tolerance (now " +
+          number(scene.numerics.pressure_tolerance) +
+          ") below what rounding allows: raise it to 1e-6 or refine domain.cell_size.");
 }
 
 template <int D>
@@ -108,11 +118,11 @@ Failure too_many_steps(const Scene& scene, double time) {
           {}};
 }
 
-template Failure not_finite<2>(const Scene&, const State<2>&);
-template Failure not_finite<3>(const Scene&, const State<3>&);
-template Failure collapsed_step<2>(const Scene&, const State<2>&, const StepBound&);
-template Failure collapsed_step<3>(const Scene&, const State<3>&, const StepBound&);
-template Failure pressure_not_found<2>(const Scene&, const State<2>&, double);
-template Failure pressure_not_found<3>(const Scene&, const State<3>&, double);
+template Failure not_finite<2>(const Scene&, const State<2>&, double);
+template Failure not_finite<3>(const Scene&, const State<3>&, double);
+template Failure collapsed_step<2>(const Scene&, const State<2>&, const StepBound&, double);
+template Failure collapsed_step<3>(const Scene&, const State<3>&, const StepBound&, double);
+template Failure pressure_not_found<2>(const Scene&, const State<2>&, double, double);
+template Failure pressure_not_found<3>(const Scene&, const State<3>&, double, double);
 
 }  // namespace quicksand

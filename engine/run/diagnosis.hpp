@@ -6,12 +6,15 @@
 
 namespace quicksand {
 
+// `shortened`: to which part of the step that bounds allow the step had been shortened, to no avail.
+
 template <int D>
-Failure not_finite(const Scene& scene, const State<D>& state);
+Failure not_finite(const Scene& scene, const State<D>& state, double shortened = 1);
 template <int D>
-Failure collapsed_step(const Scene& scene, const State<D>& state, const StepBound& bound);
+Failure collapsed_step(const Scene& scene, const State<D>& state, const StepBound& bound,
+                       double shortened = 1);
 template <int D>
-Failure pressure_not_found(const Scene& scene, const State<D>& state, double residual);
+Failure pressure_not_found(const Scene& scene, const State<D>& state, double residual, double shortened = 1);
 /// Only a fixed numerics.time_step can be above the stability bound.
 template <int D>
 Failure unstable_step(const Scene& scene, const State<D>& state, const StepBound& wave);

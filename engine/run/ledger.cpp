@@ -18,6 +18,13 @@ void each_set(const State<D>& s, F&& f) {
   f(s.soil), f(s.water);
 }
 
+void count(const Interventions& done, Ledger& l) {
+  l.clipped_points = done.clipped_points;
+  l.clamped_values = done.clamped_values;
+  l.cut_steps = done.cut_steps;
+  l.retries = done.retries;
+}
+
 }  // namespace
 
 template <int D>
@@ -45,9 +52,7 @@ LedgerKeeper<D>::LedgerKeeper(const Scene&, const State<D>& s) {
 template <int D>
 void LedgerKeeper<D>::add(const State<D>& s, const StepReport<D>& step) {
   Ledger& l = ledger_;
-  l.clipped_points = s.interventions.clipped_points;
-  l.clamped_values = s.interventions.clamped_values;
-  l.cut_steps = s.interventions.cut_steps;
+  count(s.interventions, l);
   l.water_in += step.exchange.water_in;
   l.water_out += step.exchange.water_out;
   l.soil_out += step.exchange.soil_out;
@@ -87,6 +92,7 @@ void LedgerKeeper<D>::add(const StageChange<D>& change) {
 template <int D>
 void LedgerKeeper<D>::measure(const State<D>& s, const StepReport<D>& step) {
   Ledger& l = ledger_;
+  count(s.interventions, l);
   l.energy_kinetic = step.kinetic;
   l.energy_strain = strain_energy(s);
   l.water_mass = total(s.water.mass);

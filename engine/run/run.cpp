@@ -7,11 +7,14 @@
 #include <cstdio>
 #include <limits>
 #include <map>
+#include <optional>
 
 #include "engine/plan/step_bounds.hpp"
 #include "engine/run/background_sink.hpp"
 #include "engine/run/diagnosis.hpp"
+#include "engine/run/easing.hpp"
 #include "engine/run/frame.hpp"
+#include "engine/run/held_outputs.hpp"
 #include "engine/run/setup.hpp"
 #include "engine/run/snapshot.hpp"
 #include "engine/run/stage.hpp"
@@ -52,9 +55,7 @@ class Run {
     }
     for (; stage_ < scene_.stages.size(); ++stage_)
       if (!run_stage()) break;
-    const bool shows_end = last_.finite && report_.status != RunStatus::suspended;
-    if (shows_end && last_sample_time_ < state_.time) write_sample();
-    if (shows_end && last_frame_time_ < state_.time) write_frame();
+    if (report_.status != RunStatus::suspended) show_end();
     finish();
     return report_;
   }
@@ -75,18 +76,22 @@ class Run {
     const double end = stage_begin_ + stage.duration;
     while (end - state_.time > kTimeRounding * stage.duration) {
       if (monitor_.cancelled()) return stop(RunStatus::canceled);
-      if (monitor_.suspended()) {
-        save();
-        return stop(RunStatus::suspended);
-      }
+      if (monitor_.suspended()) return suspend();
       if (report_.steps >= scene_.numerics.max_steps) return fail(too_many_steps(scene_, state_.time));
-      if (!step(end)) return false;
+      const StepSituation now = situation();
+      const StepBound bound = choose_step(scene_, now);
+      if (const auto wave = outrun_wave(scene_, now, easing_.shortened(bound).seconds))
+        return fail(unstable_step(scene_, state_, *wave));
+      if (const auto failure = step(bound, end)) {
+        if (!take_back(*failure)) return fail(*failure);
+        continue;
+      }
       if (comes_to_rest(stage)) {
         monitor_.log("at rest after " + text(state_.time - stage_begin_) + " s");
         end_time_ -= end - state_.time;
         break;
       }
-      if (due_to_save()) save();
+      if (due_to_keep_good()) keep_good();
     }
     inside_stage_ = false;
     return true;
@@ -106,26 +111,70 @@ class Run {
   void keep(A& a) {
     a(stage_, inside_stage_, stage_begin_, rest_steps_);
     a(end_time_, last_frame_time_, last_sample_time_, first_step_, iterations_, bound_seconds_);
-    a(ledger_, watch_, inertia_, last_);
+    a(ledger_, watch_, inertia_, last_, easing_);
     a(report_.steps, report_.point_steps, report_.time_step_min, report_.time_step_max, report_.frames,
       samples_);
   }
-  void save() {
+  /// Makes this state the one that is gone back to. What was held back until now is good, too.
+  void keep_good() {
+    easing_.came_through();
+    release();
     Saver to;
+    to.bytes = std::move(good_.state);
+    to.bytes.clear();
     keep(to);
-    double wall = seconds_since(start_);
+    double wall = wall_before_ + seconds_since(start_);
     to(wall, output_seconds_);
     save_state(to, state_);
-    sink_.checkpoint({std::move(to.bytes), report_.frames, samples_, state_.time});
+    good_ = {std::move(to.bytes), report_.frames, samples_, state_.time};
+    good_step_ = report_.steps;
+    if (due_to_save()) save();
+  }
+  bool due_to_keep_good() const {
+    return report_.steps - good_step_ >= options_.good_every || held_.frames() >= kHeldFrames;
+  }
+  /// Goes back to the last good state, to go on from it with shorter steps. False when that was tried before.
+  bool take_back(const Failure& failure) {
+    if (!easing_.shorten(options_.retries)) return false;
+    const Easing easing = easing_;
+    const long retries = state_.interventions.retries + 1;
+    const auto phase_seconds = state_.phase_seconds;
+    const double wall = wall_before_, output = output_seconds_;
+    held_.drop();
+    state_ = State<D>();  // its memory goes before the next one's comes
+    state_ = make_state<D>(scene_);
+    read(good_);
+    easing_ = easing;
+    state_.interventions.retries = retries;
+    state_.phase_seconds = phase_seconds;
+    wall_before_ = wall, output_seconds_ = output;
+    monitor_.log(failure.message.substr(0, failure.message.find(". ")) + ". Back at t = " +
+                 text(state_.time) + " s, with steps 1/" + text(1 / easing_.factor()) + " as long");
+    return true;
+  }
+
+  void save() {
+    sink_.checkpoint(good_);
     saved_ = Clock::now();
   }
-  void load(const Checkpoint& checkpoint) {
+  bool suspend() {
+    held_.drop();
+    save();
+    report_.frames = good_.frames;
+    return stop(RunStatus::suspended);
+  }
+  void read(const Checkpoint& checkpoint) {
     Loader from(checkpoint.state);
     keep(from);
     if (stage_ >= scene_.stages.size()) throw std::runtime_error("the checkpoint is of another case");
     from(wall_before_, output_seconds_);
     load_state(from, scene_, stage_, state_);
     if (!from.empty()) throw std::runtime_error("the checkpoint is of another case");
+    good_step_ = report_.steps;
+  }
+  void load(const Checkpoint& checkpoint) {
+    read(checkpoint);
+    good_ = checkpoint;
     frames_before_ = report_.frames;
     monitor_.log("resumed at " + text(state_.time) + " s, step " + std::to_string(report_.steps));
   }
@@ -153,16 +202,19 @@ class Run {
     stage_begin_ = state_.time;
     rest_steps_ = 0;
     monitor_.log("stage " + scene_.stages[index].name + " begins at " + text(state_.time) + " s");
+    keep_good();  // so that going back never leaves the stage
   }
 
-  bool step(double stage_end) {
-    const StepSituation now{last_.soil_limit, last_.max_speed, state_.water.size() > 0, last_.fast_wave_limit,
-                            state_.constants.inertia};
-    const StepBound chosen = choose_step(scene_, now);
-    if (chosen.seconds < kCollapse * first_step(chosen.seconds))
-      return fail(collapsed_step(scene_, state_, chosen));
-    if (const auto wave = outrun_wave(scene_, now, chosen.seconds))
-      return fail(unstable_step(scene_, state_, *wave));
+  StepSituation situation() const {
+    return {last_.soil_limit, last_.max_speed, state_.water.size() > 0, last_.fast_wave_limit,
+            state_.constants.inertia};
+  }
+
+  /// What a shorter step may help against.
+  std::optional<Failure> step(const StepBound& bound, double stage_end) {
+    if (bound.seconds < kCollapse * first_step(bound.seconds))
+      return collapsed_step(scene_, state_, bound, easing_.factor());
+    const StepBound chosen = easing_.shortened(bound);
     last_ = advance(state_, until_event(chosen.seconds, stage_end));
     ++report_.steps;
     report_.point_steps += static_cast<double>(state_.soil.size() + state_.water.size());
@@ -170,15 +222,16 @@ class Run {
     report_.time_step_max = std::max(report_.time_step_max, last_.dt);
     bound_seconds_[chosen.name] += last_.dt;
     iterations_ += last_.pressure.iterations;
-    if (!last_.finite) return fail(not_finite(scene_, state_));
+    if (!last_.finite) return not_finite(scene_, state_, easing_.factor());
     ledger_.add(state_, last_);
     inertia_.add(state_, last_);
     watch_.track(state_);
-    if (!last_.pressure.converged) return fail(pressure_not_found(scene_, state_, last_.pressure.residual));
+    if (!last_.pressure.converged)
+      return pressure_not_found(scene_, state_, last_.pressure.residual, easing_.factor());
     if (due(last_sample_time_, scene_.output.series_interval)) write_sample();
     if (due(last_frame_time_, scene_.output.frame_interval)) write_frame();
     report_progress(chosen.name);
-    return true;
+    return {};
   }
 
   /// Shortens a step so that it ends on the next frame, sample or stage; two equal steps rather than a
@@ -201,15 +254,25 @@ class Run {
   void write_sample() {
     const OutputTime timed(*this);
     ledger_.measure(state_, last_);
-    sink_.sample(state_.time, watch_.sample(state_, last_, ledger_.ledger()));
+    held_.sample(state_.time, watch_.sample(state_, last_, ledger_.ledger()));
     ++samples_;
     last_sample_time_ = state_.time;
   }
   void write_frame() {
     const OutputTime timed(*this);
-    sink_.frame(make_frame(scene_, state_, report_.frames, stage_name()));
+    held_.frame(make_frame(scene_, state_, report_.frames, stage_name()));
     ++report_.frames;
     last_frame_time_ = state_.time;
+  }
+
+  void release() {
+    const OutputTime timed(*this);
+    held_.release(sink_);
+  }
+  void show_end() {
+    if (last_.finite && last_sample_time_ < state_.time) write_sample();
+    if (last_.finite && last_frame_time_ < state_.time) write_frame();
+    release();
   }
 
   void finish_output() {
@@ -291,6 +354,8 @@ class Run {
   /// A step this much shorter than the first one says that the state has run away.
   static constexpr double kCollapse = 1e-5;
 
+  /// Frames that are held back at most: each takes about a third of a good state's memory.
+  static constexpr std::size_t kHeldFrames = 4;
   /// s of wall time, before which nothing is worth a checkpoint.
   static constexpr double kFirstCheckpoint = 0.25;
 
@@ -304,6 +369,10 @@ class Run {
   InertiaWatch inertia_;
   StepReport<D> last_;
   RunReport report_;
+  Easing easing_;
+  HeldOutputs held_;    ///< since the last good state
+  Checkpoint good_;     ///< the last good state
+  long good_step_ = 0;  ///< steps that led to it
   std::size_t stage_ = 0, samples_ = 0;
   bool inside_stage_ = false;
   double stage_begin_ = 0;  ///< s

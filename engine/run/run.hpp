@@ -113,6 +113,7 @@ struct Ledger {
   long clamped_values = 0;
   long deleted_points = 0;
   long cut_steps = 0;  ///< steps repeated with a smaller time step
+  long retries = 0;    ///< times that a failed run went back to its last good state
 };
 
 /// A stage with scaled inertia, and whether it mattered.
@@ -172,10 +173,15 @@ struct RunReport {
 
 struct RunOptions {
   int threads = 0;  ///< 0: all cores. Never changes the result.
-  /// s of wall time between two checkpoints; 0: none. The first ones come sooner, so that no more than half
-  /// of what was computed is ever lost.
+  /// s of wall time between two checkpoints; 0: none. Checkpoints are good states. The first ones come
+  /// sooner, so that little more than half of what was computed is ever lost.
   double checkpoint_interval = 0;
   const Checkpoint* resume = nullptr;  ///< of the same scene; goes on from it
+  /// Steps after which a state counts as good and is kept in memory. From it a run goes on with shorter steps
+  /// when one failed. Keeping it costs about as much as half a step. What the sink gets is held back until
+  /// then.
+  long good_every = 128;
+  int retries = 6;  ///< times that steps are halved before a failure is one of the run; 0: none
 };
 
 /// Requires `check(scene)` to be empty. Never throws for what happens in the simulation; frames up to a

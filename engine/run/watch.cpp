@@ -175,6 +175,7 @@ std::vector<SeriesInfo> Watch<D>::info() const {
   all.push_back({"ledger.clipped_points", "1", 1});
   all.push_back({"ledger.clamped_values", "1", 1});
   all.push_back({"ledger.cut_steps", "1", 1});
+  all.push_back({"ledger.retries", "1", 1});
   all.push_back({"time_step", "s", 1});
   all.push_back({"pressure_iterations", "1", 1});
   all.push_back({"max_speed", "m/s", 1});
@@ -217,7 +218,7 @@ std::vector<double> Watch<D>::sample(const State<D>& s, const StepReport<D>& ste
     out.push_back(l.energy_damped);
   }
   out.insert(out.end(), {static_cast<double>(l.clipped_points), static_cast<double>(l.clamped_values),
-                         static_cast<double>(l.cut_steps), step.dt,
+                         static_cast<double>(l.cut_steps), static_cast<double>(l.retries), step.dt,
                          static_cast<double>(step.pressure.iterations), step.max_speed, step.max_soil_speed});
   if (quasi_static_) {
     out.push_back(s.constants.inertia);

@@ -100,10 +100,12 @@ struct Interventions {
   long clipped_points = 0;  ///< put back in front of a wall
   long clamped_values = 0;  ///< porosities held within bounds
   long cut_steps = 0;       ///< steps begun again with half the time
+  long retries = 0;         ///< times that the run went back to its last good state
   Interventions& operator+=(const Interventions& o) {
     clipped_points += o.clipped_points;
     clamped_values += o.clamped_values;
     cut_steps += o.cut_steps;
+    retries += o.retries;
     return *this;
   }
 };

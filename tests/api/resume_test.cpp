@@ -51,6 +51,14 @@ struct Stopper final : RunMonitor {
 
 constexpr long kSteps = 48;
 
+/// Every step counts as good, so that it can be saved.
+RunOptions each_step_good(int threads) {
+  RunOptions options;
+  options.threads = threads;
+  options.good_every = 1;
+  return options;
+}
+
 /// The scene with stages, frames and samples so short that a few steps see all of them.
 Scene shortened(Scene scene) {
   Recorder ignored;
@@ -76,9 +84,10 @@ void expect_same_resumed(const Scene& given, const std::string& name) {
   for (const long at : {3L, 14L, 30L}) {
     Recorder parts;
     Stopper first(at, -1), rest(-1, kSteps);
-    RunReport report = run(scene, parts, first, {1});
+    RunReport report = run(scene, parts, first, each_step_good(1));
     if (report.status != RunStatus::suspended) continue;  // ended before
     ++resumed;
+    EXPECT_EQ(report.steps, at) << name;
     EXPECT_EQ(parts.last.frames, parts.frames.size()) << name;
     EXPECT_EQ(parts.last.samples, parts.samples.size()) << name;
     const Checkpoint checkpoint = parts.last;
@@ -131,7 +140,7 @@ TEST(Resume, RefusesLessThanAState) {
   Recorder sink;
   Stopper stop(5, -1);
   const Scene scene = shortened(heave());
-  run(scene, sink, stop, {1});
+  run(scene, sink, stop, {1});  // saves the beginning of the stage
   RunOptions options{1};
   options.resume = &sink.last;
   Stopper end(-1, 6);

@@ -34,7 +34,8 @@ nlohmann::json ledger_json(const Ledger& l) {
           {"clipped_points", l.clipped_points},
           {"clamped_values", l.clamped_values},
           {"deleted_points", l.deleted_points},
-          {"cut_steps", l.cut_steps}};
+          {"cut_steps", l.cut_steps},
+          {"retries", l.retries}};
 }
 
 void expect_ledger(const RunReport& report, const LedgerLimits& limits) {
