@@ -12,6 +12,7 @@
 
 #include "api/case_json.hpp"
 #include "engine/results/result_file.hpp"
+#include "engine/study/error_estimate.hpp"
 #include "server/files.hpp"
 #include "server/version.hpp"
 
@@ -62,8 +63,12 @@ RunReport run_into(const std::string& folder, const std::string& case_text, cons
                            {"units", units_document},
                            {"engine_version", engine_version},
                            {"host", host_document()}});
-  RunReport report = run(scene, file, monitor, options);
-  const std::string text = report_json(scene, plan, report);
+  HistorySink history(&file);
+  const bool with_error = scene.numerics.error_estimate != ErrorEstimate::none;
+  RunReport report = run(scene, with_error ? static_cast<ResultSink&>(history) : file, monitor, options);
+  std::optional<ErrorEstimateReport> error;
+  if (with_error) error = estimate_error(scene, report, history, monitor, options);
+  const std::string text = report_json(scene, plan, report, error);
   file.document("report", text);
   file.close();
   write_atomically(std::filesystem::path(folder) / "run.json", text);

@@ -6,12 +6,14 @@
 
 #include "engine/grid/scene_grid.hpp"
 #include "engine/materials/stability.hpp"
+#include "engine/plan/companions.hpp"
 #include "engine/plan/quasi_static.hpp"
 #include "engine/plan/soil_stiffness.hpp"
 #include "engine/plan/step_bounds.hpp"
 #include "engine/points/seeding.hpp"
 #include "engine/scene/region.hpp"
 #include "engine/scene/stages.hpp"
+#include "engine/scene/text.hpp"
 #include "engine/step/state.hpp"
 
 namespace quicksand {
@@ -132,6 +134,19 @@ StepSituation situation(const Scene& scene, std::size_t stage, const Plan& plan,
           plan.has_water ? initial_fast_wave_limit(scene, stage, h, inertia) : none, inertia};
 }
 
+/// What the companions of an error estimate cost besides, one after the other.
+void add_companions(const Scene& scene, Plan& plan) {
+  const Companions others = companions(scene);
+  for (const auto& other : {others.coarser, others.finer}) {
+    if (!other) continue;
+    const Plan cost = make_plan(other->scene);
+    plan.seconds += cost.seconds;
+    plan.memory_bytes = std::max(plan.memory_bytes, cost.memory_bytes);
+    plan.reasons.push_back("Discretisation error: told by another run with cells of " +
+                           text(other->scene.cell_size()) + " m.");
+  }
+}
+
 }  // namespace
 
 Plan make_plan(const Scene& scene) {
@@ -168,6 +183,7 @@ Plan make_plan(const Scene& scene) {
   }
   plan.seconds = plan.steps * static_cast<double>(plan.soil_points + plan.water_points) *
                  (plan.dimensions == 3 ? kCostInSpace : 1) / kPointStepsPerSecond;
+  add_companions(scene, plan);
   return plan;
 }
 
