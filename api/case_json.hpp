@@ -24,6 +24,9 @@ ParsedCase parse_case(const std::string& text, const std::optional<Preset>& pres
 std::string resolved_case(const Scene& scene);
 
 std::string plan_json(const Plan& plan);
+/// The plan of a valid case and, in `presets`, what each preset would cost or why it does not fit. What the
+/// case says under `numerics` wins over a preset there too.
+std::string estimate_json(const std::string& case_text, const Plan& plan, const Calibration& machine);
 /// `run.json`: status, failure, plan, ledger, headline figures, their error if it was estimated, cost.
 std::string report_json(const Scene& scene, const Plan& plan, const RunReport& report,
                         const std::optional<ErrorEstimateReport>& error_estimate = {});
