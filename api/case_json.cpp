@@ -8,6 +8,7 @@
 #include "api/scene_from_json.hpp"
 #include "api/scene_to_json.hpp"
 #include "api/schema_check.hpp"
+#include "engine/plan/companions.hpp"
 #include "engine/scene/check.hpp"
 
 namespace quicksand {
@@ -61,6 +62,8 @@ ParsedCase parse_case(const std::string& text, const std::optional<Preset>& pres
   append(parsed.faults, std::move(schema.faults));
   if (json.value.is_object() && parsed.faults.size() <= max_faults) {
     Scene scene = read_scene(json.value, preset, std::move(schema.refused), parsed.faults);
+    if (parsed.faults.empty())
+      if (auto fault = no_companion(scene)) parsed.faults.push_back(std::move(*fault));
     if (parsed.faults.empty()) parsed.scene = std::move(scene);
   }
   parsed.faults = presentable(std::move(parsed.faults));

@@ -6,6 +6,7 @@
 #include "engine/plan/plan.hpp"
 #include "engine/run/run.hpp"
 #include "engine/scene/scene.hpp"
+#include "engine/study/error_estimate.hpp"
 
 namespace quicksand {
 
@@ -23,8 +24,12 @@ ParsedCase parse_case(const std::string& text, const std::optional<Preset>& pres
 std::string resolved_case(const Scene& scene);
 
 std::string plan_json(const Plan& plan);
-/// `run.json`: status, failure, plan, ledger, headline figures, cost.
-std::string report_json(const Scene& scene, const Plan& plan, const RunReport& report);
+/// The plan of a valid case and, in `presets`, what each preset would cost or why it does not fit. What the
+/// case says under `numerics` wins over a preset there too.
+std::string estimate_json(const std::string& case_text, const Plan& plan, const Calibration& machine);
+/// `run.json`: status, failure, plan, ledger, headline figures, their error if it was estimated, cost.
+std::string report_json(const Scene& scene, const Plan& plan, const RunReport& report,
+                        const std::optional<ErrorEstimateReport>& error_estimate = {});
 
 /// The draft-07 schema, as shipped in api/case.schema.json (compiled in).
 const std::string& case_schema();

@@ -111,11 +111,50 @@ const char* word_of(RunStatus status) {
   return "";
 }
 
+const char* word_of(OrderBasis basis) {
+  switch (basis) {
+    case OrderBasis::assumed:
+      return "assumed";
+    case OrderBasis::observed:
+      return "observed";
+    case OrderBasis::not_asymptotic:
+      return "not in the asymptotic range";
+  }
+  return "";
+}
+
+Json to_json(const DiscretisationError& e) {
+  return {{"error", e.error}, {"order", e.order}, {"basis", word_of(e.basis)}};
+}
+
+Json to_json(const ErrorEstimateReport& estimate) {
+  Json runs = Json::array(), figures = Json::array();
+  for (const CompanionRun& c : estimate.companions)
+    runs.push_back({{"cell_size", c.cell_size},
+                    {"ratio", c.ratio},
+                    {"status", word_of(c.status)},
+                    {"failure", c.failure.empty() ? Json(nullptr) : Json(c.failure)},
+                    {"steps", c.steps},
+                    {"wall_seconds", c.wall_seconds}});
+  for (const FigureError& f : estimate.figures)
+    figures.push_back({{"name", f.name},
+                       {"component", f.component},
+                       {"unit", f.unit},
+                       {"value", f.value},
+                       {"range", f.range},
+                       {"end", to_json(f.end)},
+                       {"history", to_json(f.history)}});
+  return {{"missing", estimate.missing.empty() ? Json(nullptr) : Json(estimate.missing)},
+          {"companions", runs},
+          {"figures", figures}};
+}
+
 }  // namespace
 
 std::string plan_json(const Plan& plan) { return to_json(plan).dump(2) + "\n"; }
 
-std::string report_json(const Scene& scene, const Plan& plan, const RunReport& report) {
+std::string report_json(const Scene& scene, const Plan& plan, const RunReport& report,
+                        const std::optional<ErrorEstimateReport>& error_estimate) {
   Json json{{"name", scene.name}, {"status", word_of(report.status)}, {"failure", nullptr}};
   if (report.status == RunStatus::failed)
     json["failure"] = {{"code", report.failure.code},
@@ -123,6 +162,7 @@ std::string report_json(const Scene& scene, const Plan& plan, const RunReport& r
                        {"time", report.failure.time},
                        {"place", report.failure.place}};
   json["headline"] = report.heave.empty() ? Json(nullptr) : to_json(report.heave.front());
+  json["error_estimate"] = error_estimate ? to_json(*error_estimate) : Json(nullptr);
   json["quasi_static"] = Json::array();
   for (const QuasiStaticReport& stage : report.quasi_static) json["quasi_static"].push_back(to_json(stage));
   json["sim_time"] = report.sim_time;

@@ -156,6 +156,15 @@ void read_output(const Place& place, Output& output) {
   }
 }
 
+void read_error_estimate(const Place& place, ErrorEstimate& estimate) {
+  bool wanted = false;
+  std::string word;
+  place.read(wanted);
+  place.read(word);
+  if (wanted) estimate = ErrorEstimate::coarser;
+  if (word == "finer") estimate = ErrorEstimate::finer;
+}
+
 void read_numerics(const Place& place, const std::optional<Preset>& preset, Numerics& numerics) {
   place["preset"].read(numerics.preset);
   apply_preset(preset.value_or(numerics.preset), numerics);
@@ -171,6 +180,7 @@ void read_numerics(const Place& place, const std::optional<Preset>& preset, Nume
   place["drift_time"].read(numerics.drift_time);
   place["quasi_static_transits"].read(numerics.quasi_static_transits);
   place["max_steps"].read(numerics.max_steps);
+  read_error_estimate(place["error_estimate"], numerics.error_estimate);
 }
 
 /// True when the grid itself cannot be trusted, so that no geometry can be checked against it.

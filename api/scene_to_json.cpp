@@ -229,6 +229,9 @@ Json Writer::numerics() const {
   if (!n.time_step) json["time_step_factor"] = n.time_step_factor;
   if (has_quasi_static(scene)) json["quasi_static_transits"] = n.quasi_static_transits;
   json["max_steps"] = n.max_steps;
+  json["error_estimate"] = n.error_estimate == ErrorEstimate::finer
+                               ? Json("finer")
+                               : Json(n.error_estimate == ErrorEstimate::coarser);
   return json;
 }
 

@@ -4,6 +4,7 @@
 #include <iostream>
 
 #include "api/case_json.hpp"
+#include "server/calibration_file.hpp"
 #include "server/commands.hpp"
 #include "server/execute.hpp"
 #include "server/files.hpp"
@@ -117,7 +118,8 @@ int check_command(const std::string& case_file, const std::optional<Preset>& pre
     print_faults(case_file, parsed.faults);
     return exit_status::bad_input;
   }
-  std::cout << plan_json(make_plan(*parsed.scene)) << '\n';
+  const Calibration machine = read_calibration(user_calibration());
+  std::cout << estimate_json(*text, make_plan(*parsed.scene, machine), machine) << '\n';
   return exit_status::ok;
 }
 

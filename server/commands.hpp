@@ -30,6 +30,18 @@ int run_command(const RunCommand& command);
 
 int check_command(const std::string& case_file, const std::optional<Preset>& preset);
 
+struct TradeoffCommand {
+  std::string case_file, out, reference;
+  std::optional<Preset> preset;
+  int threads = 1;
+  double budget = 0;  ///< s of CPU time; 0: none
+};
+/// Prints the ladder's table; with `out`, leaves it there with its picture.
+int tradeoff_command(const TradeoffCommand& command);
+
+/// Measures how fast this machine is, for the command line or for the service with this state folder.
+int calibrate_command(const std::string& state);
+
 /// Prints the schema of case files.
 int schema_command();
 

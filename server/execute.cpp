@@ -16,6 +16,7 @@
 
 #include "api/case_json.hpp"
 #include "engine/results/result_file.hpp"
+#include "engine/study/error_estimate.hpp"
 #include "server/files.hpp"
 #include "server/version.hpp"
 
@@ -94,6 +95,9 @@ RunReport run_into(const std::string& folder, const std::string& case_text, cons
   const Documents documents{
       {"case", case_text},       {"case_resolved", resolved_case(scene)}, {"plan", plan_json(plan)},
       {"units", units_document}, {"engine_version", engine_version},      {"host", host_document()}};
+  // The history that its error is estimated from is kept in memory only: such a run starts again.
+  const bool with_error = scene.numerics.error_estimate != ErrorEstimate::none;
+  if (with_error && resume == Resume::if_possible) resume = Resume::never;
   Opened opened;
   if (resume != Resume::never) opened = reopen(folder, documents, monitor);
   if (!opened.file && resume == Resume::required)
@@ -103,14 +107,18 @@ RunReport run_into(const std::string& folder, const std::string& case_text, cons
   options.resume = opened.from ? &opened.from->run : nullptr;
   std::error_code none;
   std::filesystem::remove(std::filesystem::path(folder) / "run.json", none);  // of a run that was suspended
-  RunReport report = run(scene, *opened.file, monitor, options);
+  HistorySink history(opened.file.get());
+  RunReport report =
+      run(scene, with_error ? static_cast<ResultSink&>(history) : *opened.file, monitor, options);
   if (opened.from && found_damage(report)) {
     monitor.log("the interrupted run's results are damaged; the run starts from its beginning");
     opened = {};
     return run_into(folder, case_text, scene, monitor, options, Resume::never);
   }
   if (report.status == RunStatus::failed && report.failure.code == "output") return report;
-  const std::string text = report_json(scene, plan, report);
+  std::optional<ErrorEstimateReport> error;
+  if (with_error) error = estimate_error(scene, report, history, monitor, options);
+  const std::string text = report_json(scene, plan, report, error);
   opened.file->document("report", text);
   opened.file->close();
   write_atomically(std::filesystem::path(folder) / "run.json", text);

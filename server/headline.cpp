@@ -53,6 +53,25 @@ std::string inertia_text(const Json& stages) {
   return text;
 }
 
+/// What the answer's cells cost in accuracy, of what was asked for.
+std::string error_text(const Json& estimate) {
+  const auto missing = estimate.find("missing");
+  if (missing != estimate.end() && missing->is_string())
+    return "  No error estimate: " + missing->get<std::string>() + "\n";
+  std::string text;
+  const auto figures = estimate.find("figures");
+  if (figures == estimate.end()) return text;
+  for (const Json& figure : *figures) {
+    const Json& end = figure["end"];
+    const double component = number(figure, "component");
+    text += fmt::format("  {}{}: {:.4g} ± {:.2g} {} at the end, ± {:.2g} over time (order {:.2g}, {})\n",
+                        word(figure, "name"), component > 0 ? fmt::format("[{:.0f}]", component) : "",
+                        number(figure, "value"), number(end, "error"), word(figure, "unit"),
+                        number(figure["history"], "error"), number(end, "order"), word(end, "basis"));
+  }
+  return text;
+}
+
 std::string cost_text(const Json& report) {
   const double wall = number(report, "wall_seconds");
   return fmt::format("  Simulated {:.4g} s in {} ({:.0f} steps, {:.3g} point-steps/s)\n",
@@ -68,6 +87,8 @@ std::string headline_text(const std::string& report) {
   std::string text = fmt::format("{}: {}\n", word(json, "name"), word(json, "status"));
   if (const auto heave = json.find("headline"); heave != json.end() && heave->is_object())
     text += heave_text(*heave);
+  if (const auto estimate = json.find("error_estimate"); estimate != json.end() && estimate->is_object())
+    text += error_text(*estimate);
   if (const auto stages = json.find("quasi_static"); stages != json.end() && stages->is_array())
     text += inertia_text(*stages);
   if (const auto ledger = json.find("ledger"); ledger != json.end() && ledger->is_object())

@@ -16,6 +16,8 @@ const std::map<std::string, Preset> presets{
 struct CommandLine {
   RunCommand run;
   std::string check_case;
+  TradeoffCommand tradeoff;
+  std::string calibrate_state;
   SubmitCommand submit;
   ServeCommand serve;
   std::optional<Preset> check_preset;
@@ -56,6 +58,22 @@ void add_local_commands(CLI::App& app, CommandLine& line) {
   check->add_option("CASE", line.check_case, "case file (JSON)")->required();
   add_preset(check, line.check_preset);
   check->callback([&line] { line.status = check_command(line.check_case, line.check_preset); });
+
+  CLI::App* tradeoff = app.add_subcommand("tradeoff", "error and cost of a case under other settings");
+  tradeoff->add_option("CASE", line.tradeoff.case_file, "case file (JSON)")->required();
+  tradeoff->add_option("--out", line.tradeoff.out, "folder for tradeoff.csv and tradeoff.svg");
+  tradeoff->add_option("--reference", line.tradeoff.reference,
+                       "CSV of curves: time, then series by name; if absent, the run with the finest cells");
+  tradeoff->add_option("--threads", line.tradeoff.threads, "0: all cores")->check(CLI::Range(0, 1024));
+  tradeoff->add_option("--budget", line.tradeoff.budget, "s of CPU time for all of it; 0: no end")
+      ->check(CLI::Range(0.0, 1e9));
+  add_preset(tradeoff, line.tradeoff.preset);
+  tradeoff->callback([&line] { line.status = tradeoff_command(line.tradeoff); });
+
+  CLI::App* calibrate = app.add_subcommand("calibrate", "measure this machine, for estimates of time");
+  calibrate->add_option("--state", line.calibrate_state,
+                        "folder of a service, which reads it as it starts; if absent, for `quicksand check`");
+  calibrate->callback([&line] { line.status = calibrate_command(line.calibrate_state); });
 
   CLI::App* schema = app.add_subcommand("schema", "print the schema of case files");
   schema->callback([&line] { line.status = schema_command(); });

@@ -25,14 +25,14 @@ struct PlannedCase {
 };
 
 /// The body as a scene that this service may run, or 422 with every fault.
-PlannedCase plan_case(const Settings& settings, const std::string& text) {
+PlannedCase plan_case(const Settings& settings, const Calibration& machine, const std::string& text) {
   ParsedCase parsed = parse_case(text);
   Problem problem;
   problem.status = 422;
   problem.detail = "the case cannot be run";
   problem.errors = std::move(parsed.faults);
   if (!parsed.scene) throw ProblemError{problem};
-  PlannedCase planned{*parsed.scene, make_plan(*parsed.scene)};
+  PlannedCase planned{*parsed.scene, make_plan(*parsed.scene, machine)};
   problem.errors = too_large(settings, cost_of(planned.plan));
   if (!problem.errors.empty()) throw ProblemError{problem};
   return planned;
@@ -113,7 +113,7 @@ void post_run(Service& service, const Call& call, httplib::Response& response) {
   wanted.idempotency_key = checked_key(call);
   wanted.priority = checked_priority(call);
   refuse_on_a_full_disk(service);
-  const PlannedCase planned = plan_case(service.settings, call.request.body);
+  const PlannedCase planned = plan_case(service.settings, service.machine, call.request.body);
   wanted.name = planned.scene.name;
   wanted.cost = cost_of(planned.plan);
   wanted.owner = call.caller.name;
@@ -150,7 +150,8 @@ void post_run(Service& service, const Call& call, httplib::Response& response) {
 }
 
 void post_validate(Service& service, const Call& call, httplib::Response& response) {
-  response.set_content(plan_json(plan_case(service.settings, call.request.body).plan), "application/json");
+  const PlannedCase planned = plan_case(service.settings, service.machine, call.request.body);
+  response.set_content(estimate_json(call.request.body, planned.plan, service.machine), "application/json");
 }
 
 void get_runs(Service& service, const Call& call, httplib::Response& response) {

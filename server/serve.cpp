@@ -12,6 +12,7 @@
 #include <stdexcept>
 #include <thread>
 
+#include "server/calibration_file.hpp"
 #include "server/files.hpp"
 #include "server/http_server.hpp"
 #include "server/inherited_socket.hpp"
@@ -74,7 +75,15 @@ void serve(Settings settings) {
   ChangeBell bell;
   Metrics metrics;
   Runner runner(store, folder, bell, metrics, settings);
-  Service service{store, keys, runner, bell, folder, metrics, settings, read_catalogue(settings.cases)};
+  Service service{store,
+                  keys,
+                  runner,
+                  bell,
+                  folder,
+                  metrics,
+                  settings,
+                  read_catalogue(settings.cases),
+                  read_calibration(state_calibration(folder.path()))};
   HttpServer http(service);
   const std::string url = listen(http, settings, inherited);
   runner.start();

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/plan/calibration.hpp"
 #include "server/access.hpp"
 #include "server/catalogue.hpp"
 #include "server/change_bell.hpp"
@@ -31,6 +32,7 @@ struct Service {
   Metrics& metrics;
   const Settings& settings;
   std::map<std::string, ShippedCase> cases;
+  Calibration machine;
   Milliseconds started = utc_now();
   Places waiters{settings.max_waiters}, streams{settings.max_streams}, readers{settings.max_readers};
   std::atomic<bool> stopping{false};

@@ -6,22 +6,36 @@
 
 #include "engine/grid/scene_grid.hpp"
 #include "engine/materials/stability.hpp"
+#include "engine/plan/companions.hpp"
 #include "engine/plan/quasi_static.hpp"
 #include "engine/plan/soil_stiffness.hpp"
 #include "engine/plan/step_bounds.hpp"
 #include "engine/points/seeding.hpp"
 #include "engine/scene/region.hpp"
 #include "engine/scene/stages.hpp"
+#include "engine/scene/text.hpp"
 #include "engine/step/state.hpp"
 
 namespace quicksand {
 namespace {
 
-/// Point-steps per second of the two-phase step on one 2.6 GHz core, measured by tests/bench/run; only the
-/// estimate of the run's wall time depends on it.
-constexpr double kPointStepsPerSecond = 7e6;
-/// The same step in space, where a point touches 81 faces instead of 18: measured 3.3 times as long.
-constexpr double kCostInSpace = 3.3;
+/// What a run takes besides its steps, measured on one 2.6 GHz core: opening and closing its file, and each
+/// frame with its compression.
+constexpr double kStartSeconds = 0.06, kFrameSeconds = 1.1e-3, kFramePointSeconds = 1.2e-6;
+
+double output_seconds(const Scene& scene, const Plan& plan) {
+  const double frames = 2 + plan.end_time / scene.output.frame_interval;
+  const auto points = static_cast<double>(plan.soil_points + plan.fixed_soil_points + plan.water_points);
+  return kStartSeconds + frames * (kFrameSeconds + points * kFramePointSeconds);
+}
+
+/// Steps that end on every sample and frame (Run::until_event): as many as the longer of the two intervals'
+/// parts needs.
+double steps_between_events(const Scene& scene, double duration, double dt) {
+  constexpr double rounding = 1e-9;
+  const double part = std::min({scene.output.series_interval, scene.output.frame_interval, duration});
+  return std::max(1.0, std::round(duration / part)) * std::max(1.0, std::ceil(part / dt * (1 - rounding)));
+}
 
 /// Whether the top of a body lies open to the air anywhere in a stage: no other wet body above its surface,
 /// looked at in every column of cells.
@@ -137,9 +151,22 @@ StepSituation situation(const Scene& scene, std::size_t stage, const Plan& plan,
           plan.has_water ? initial_fast_wave_limit(scene, stage, h, inertia) : none, inertia};
 }
 
+/// What the companions of an error estimate cost besides, one after the other.
+void add_companions(const Scene& scene, const Calibration& machine, Plan& plan) {
+  const Companions others = companions(scene);
+  for (const auto& other : {others.coarser, others.finer}) {
+    if (!other) continue;
+    const Plan cost = make_plan(other->scene, machine);
+    plan.seconds += cost.seconds;
+    plan.memory_bytes = std::max(plan.memory_bytes, cost.memory_bytes);
+    plan.reasons.push_back("Discretisation error: told by another run with cells of " +
+                           text(other->scene.cell_size()) + " m.");
+  }
+}
+
 }  // namespace
 
-Plan make_plan(const Scene& scene) {
+Plan make_plan(const Scene& scene, const Calibration& machine) {
   Plan plan;
   plan.dimensions = scene.domain.dimension == Dimension::space ? 3 : 2;
   plan.cell_size = scene.cell_size();
@@ -169,10 +196,12 @@ Plan make_plan(const Scene& scene) {
       plan.time_step = bound.seconds;
     }
     plan.end_time += scene.stages[k].duration;
-    plan.steps += std::ceil(scene.stages[k].duration / bound.seconds);
+    plan.steps += steps_between_events(scene, scene.stages[k].duration, bound.seconds);
   }
-  plan.seconds = plan.steps * static_cast<double>(plan.soil_points + plan.water_points) *
-                 (plan.dimensions == 3 ? kCostInSpace : 1) / kPointStepsPerSecond;
+  plan.seconds =
+      machine.seconds(scene, plan.steps, static_cast<double>(plan.soil_points + plan.water_points));
+  plan.seconds += output_seconds(scene, plan);
+  add_companions(scene, machine, plan);
   return plan;
 }
 

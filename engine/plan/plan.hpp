@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/plan/calibration.hpp"
 #include "engine/plan/stage_plan.hpp"
 #include "engine/scene/scene.hpp"
 
@@ -34,6 +35,6 @@ struct Plan {
 };
 
 /// Requires `check(scene)` to be empty.
-Plan make_plan(const Scene& scene);
+Plan make_plan(const Scene& scene, const Calibration& machine = {});
 
 }  // namespace quicksand

@@ -195,6 +195,8 @@ enum class Preset { draft, standard, fine };
 enum class Kernel { quadratic, linear };
 enum class Transfer { flip, apic };
 enum class PressureScheme { implicit, explicit_scheme };
+/// Companion runs on other cells that tell the discretisation error with the answer.
+enum class ErrorEstimate { none, coarser, finer };
 struct Numerics {
   Preset preset = Preset::standard;
   double cell_size_factor = 1;  ///< –, multiplies domain.cell_size (draft 2, fine ½)
@@ -210,6 +212,7 @@ struct Numerics {
   /// –, how often a wave crosses the soil within the process's own time in a quasi-static stage.
   double quasi_static_transits = 200;
   long max_steps = 100'000'000;
+  ErrorEstimate error_estimate = ErrorEstimate::none;  ///< finer: a coarser and a finer companion
 };
 
 struct Scene {

@@ -141,7 +141,8 @@ std::vector<json> documents() {
       "heave": {"body": "clay", "threshold": 0.001, "below": "a", "above": "b"}},
     "numerics": {"preset": "fine", "cell_size_factor": 0.25, "points_per_cell": 3, "kernel": "linear",
       "transfer": "flip", "pic_rate": 2, "pressure": "implicit", "pressure_tolerance": 1e-9,
-      "time_step_factor": 0.5, "drift_time": 0.1, "quasi_static_transits": 100, "max_steps": 1000}
+      "time_step_factor": 0.5, "drift_time": 0.1, "quasi_static_transits": 100, "max_steps": 1000,
+      "error_estimate": "finer"}
   })json"));
   all.push_back(json::parse(R"json({
     "schema": "quicksand.case/1", "name": "space",
@@ -161,7 +162,7 @@ std::vector<json> documents() {
                "plate_force": [0, -50, 0], "ramp": 0.25}],
     "stages": [{"name": "one", "duration": 2}],
     "output": {"probes": [{"name": "a", "at": [0.5, 0.5, 0.5], "quantity": "water_velocity"}]},
-    "numerics": {"transfer": "apic", "pressure": "explicit", "time_step": 0.001}
+    "numerics": {"transfer": "apic", "pressure": "explicit", "time_step": 0.001, "error_estimate": true}
   })json"));
   all.push_back(json::parse(R"json({
     "schema": "quicksand.case/1", "name": "dry", "domain": {"max": [1, 1], "cell_size": 0.25},

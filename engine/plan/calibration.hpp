@@ -1,0 +1,31 @@
+#pragma once
+// How long steps take on a machine.
+
+#include <array>
+#include <cstddef>
+
+#include "engine/scene/scene.hpp"
+
+namespace quicksand {
+
+/// What the program runs for a scene; each has loops of its own.
+enum class SceneKind { soil, water, both, soil_space, water_space, both_space };
+inline constexpr std::size_t kSceneKinds = 6;
+SceneKind kind_of(const Scene& scene);
+
+/// A step takes `step + point · points` seconds on one core.
+struct StepCost {
+  double step = 0, point = 0;  ///< s
+};
+
+struct Calibration {
+  /// By SceneKind; the defaults are those of one 2.6 GHz core (tests/bench/run, `quicksand calibrate`).
+  std::array<StepCost, kSceneKinds> cost{
+      {{25e-6, 160e-9}, {35e-6, 160e-9}, {25e-6, 140e-9}, {40e-6, 700e-9}, {50e-6, 500e-9}, {40e-6, 480e-9}}};
+  double seconds(const Scene& scene, double steps, double points) const {
+    const StepCost& c = cost[static_cast<std::size_t>(kind_of(scene))];
+    return steps * (c.step + c.point * points);
+  }
+};
+
+}  // namespace quicksand

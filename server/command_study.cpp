@@ -1,0 +1,68 @@
+// What accuracy costs, and how fast this machine is.
+
+#include <cstdlib>
+#include <filesystem>
+#include <iostream>
+
+#include "api/case_json.hpp"
+#include "engine/study/calibrate.hpp"
+#include "engine/study/ladder.hpp"
+#include "server/calibration_file.hpp"
+#include "server/commands.hpp"
+#include "server/files.hpp"
+#include "server/progress_bar.hpp"
+
+namespace quicksand {
+
+int tradeoff_command(const TradeoffCommand& command) {
+  const auto text = read_case_file(command.case_file);
+  if (!text) return exit_status::bad_input;
+  const ParsedCase parsed = parse_case(*text, command.preset);
+  if (!parsed.scene) {
+    print_faults(command.case_file, parsed.faults);
+    return exit_status::bad_input;
+  }
+  std::vector<Curve> reference;
+  if (!command.reference.empty()) {
+    const auto table = read_case_file(command.reference);
+    if (!table) return exit_status::bad_input;
+    try {
+      reference = curves_from_csv(*table);
+    } catch (const std::runtime_error& error) {
+      std::cerr << command.reference << ": " << error.what() << '\n';
+      return exit_status::bad_input;
+    }
+  }
+  RunMonitor monitor;
+  const Tradeoff tradeoff =
+      measure_tradeoff(*parsed.scene, reference, command.threads, command.budget, monitor);
+  const std::string csv = tradeoff_csv(tradeoff);
+  std::cout << csv;
+  if (command.out.empty()) return exit_status::ok;
+  try {
+    const std::filesystem::path folder(command.out);
+    std::filesystem::create_directories(folder);
+    write_atomically(folder / "tradeoff.csv", csv);
+    write_atomically(folder / "tradeoff.svg", tradeoff_svg(tradeoff, parsed.scene->name));
+  } catch (const std::exception& error) {
+    std::cerr << command.out << ": " << error.what() << '\n';
+    return exit_status::not_written;
+  }
+  return exit_status::ok;
+}
+
+int calibrate_command(const std::string& state) {
+  const std::filesystem::path file = state.empty() ? user_calibration() : state_calibration(state);
+  const Calibration measured = calibrate();
+  std::cout << calibration_json(measured);
+  try {
+    if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path());
+    write_atomically(file, calibration_json(measured));
+  } catch (const std::exception& error) {
+    std::cerr << file.string() << ": " << error.what() << '\n';
+    return exit_status::not_written;
+  }
+  return exit_status::ok;
+}
+
+}  // namespace quicksand
