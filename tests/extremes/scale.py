@@ -54,9 +54,10 @@ def similar(case, length, time):
 
 # Bounds of the case format on what `similar` multiplies by stress, speed, gravity and length · speed.
 LIMITS = {"stress": {"young_modulus": (1, 1e13), "bulk_modulus": (1e3, 1e12), "cohesion": (0, 1e12), "traction": (0, 1e12)},
+          "rate": {"pic_rate": (0, 1e6), "rotation_rate": (0, 1e6)},
           "speed": {"value": (1e-14, 10), "velocity": (0, 1e3), "plate_velocity": (0, 1e3)},
           "gravity": {"gravity": (0, 1e4)}, "viscosity": {"viscosity": (0, 1e4)},
-          "length": {"cell_size": (1e-6, 1e5), "grain_size": (1e-7, 1), "max": (0, 1e7), "head": (0, 1e7)}}
+          "length": {"cell_size": (9e-7, 1.1e5), "grain_size": (1e-7, 1), "max": (0, 1e7), "head": (0, 1e7)}}
 
 
 def numbers(value):
@@ -78,13 +79,13 @@ def possible(rng, case):
                 walk(value)
 
     walk(case)
+    found.append(("rate", 0, 1e6, 5))  # pic_rate's default
     for _ in range(20):
-        length = 10 ** rng.uniform(-6, 5) / case["domain"]["cell_size"]
-        if rng.random() < 0.5:
-            length = 2.0 ** round(math.log2(length))
-        speed = math.sqrt(length) * 10 ** rng.uniform(-2, 2)
+        # Powers of two change no rounding: what differs then is a constant in the engine that should scale.
+        length = 2.0 ** round(math.log2(10 ** rng.uniform(-6, 5) / case["domain"]["cell_size"]))
+        speed = 2.0 ** round(math.log2(math.sqrt(length)) + rng.uniform(-6, 6))
         factor = {"stress": speed**2, "speed": speed, "gravity": speed**2 / length, "viscosity": speed * length,
-                  "length": length}
+                  "length": length, "rate": speed / length}
         if all(low <= factor[kind] * v <= high for kind, low, high, v in found):
             return length, length / speed
     return None

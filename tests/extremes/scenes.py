@@ -324,7 +324,7 @@ def still(s):
     top = s.rng.choice((s.ny - 1, s.ny - 0.5))
     bed = s.rng.randint(0, int(top) - 1)
     if bed:
-        s.add("bed", "saturated_soil", s.box(0, 0, s.nx, bed), fixed=s.rng.random() < 0.3)
+        s.add("bed", "saturated_soil", s.box(0, 0, s.nx, bed), fixed=True)  # grains may float
     s.add("tank", "water", s.box(0, bed, s.nx, top))
     s.more["_form"] = "hydrostatic"
 
