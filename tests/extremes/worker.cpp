@@ -2,9 +2,9 @@
 // line out says how the scene ended and every invariant that it broke. `run` starts it, and starts it again
 // after a crash or a hang.
 
-#include <cmath>
+#include <tbb/global_control.h>
+
 #include <iostream>
-#include <map>
 #include <nlohmann/json.hpp>
 
 #include "api/case_json.hpp"
@@ -84,6 +84,8 @@ json judge(const json& asked) {
 }  // namespace quicksand::test
 
 int main() {
+  // Three threads also on two cores.
+  const tbb::global_control threads(tbb::global_control::max_allowed_parallelism, 3);
   for (std::string line; std::getline(std::cin, line);)
     std::cout << quicksand::test::judge(nlohmann::json::parse(line)).dump() << std::endl;
 }
