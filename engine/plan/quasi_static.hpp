@@ -24,8 +24,8 @@ struct SlowProcess {
 
 SlowProcess slow_process(const Scene& scene, std::size_t stage);
 
-/// Transits of the pore water's own wave that count as one of the frame's: drag damps it, so that N of them leave
-/// an error of 1/N², 0.25 % at 20; the frame's goes on to and fro.
+/// Transits of the pore water's own wave that count as one of the frame's: drag damps it, so that N of them
+/// leave an error of 1/N², 0.25 % at 20; the frame's goes on to and fro.
 inline constexpr double kWaterTransits = 0.1;
 /// Part of the strain energy that the kinetic energy, with its scaled inertia, may reach before an answer
 /// says that its inertia is not negligible.
