@@ -55,11 +55,16 @@ SlowProcess slow_process(const Scene& scene, std::size_t stage) {
     const SoilMaterial material = SoilMaterial::from(soil, scene.water);
     const double thickness = height * size_of(scene, body) / size,
                  modulus = initial_modulus(scene, body, material);
-    slow.transit_time +=
-        largest / height * thickness * std::sqrt((1 - soil.porosity) * soil.grain_density / modulus);
+    double slowness = std::sqrt((1 - soil.porosity) * soil.grain_density / modulus);  // s/m
+    if (body.kind == BodyKind::saturated_soil && scene.water.bulk_modulus)
+      slowness =
+          std::max(slowness, kWaterTransits * std::sqrt(scene.water.density / *scene.water.bulk_modulus));
+    slow.transit_time += largest / height * thickness * slowness;
     if (body.kind != BodyKind::saturated_soil) continue;
     resistance += thickness * material.drag.resistivity(soil.porosity);
-    compliance += thickness / modulus;
+    // Pore water stores too: soft water beside stiff grains sets the pace.
+    const double stored = scene.water.bulk_modulus ? soil.porosity / *scene.water.bulk_modulus : 0;
+    compliance += thickness * (1 / modulus + stored);
   }
   if (resistance > 0) slow.process_time = std::min(slow.process_time, resistance * compliance);
   if (!scene.stages[stage].quasi_static) return slow;

@@ -26,9 +26,12 @@ struct StageChange {
 template <int D>
 StageChange<D> begin_stage(const Scene& scene, std::size_t index, State<D>& state);
 
+/// What the ratio of energies is at most, so that it stays a number where nothing is strained.
+constexpr double kLargestInertiaRatio = 1e9;
+
 /// Kinetic over strain energy; 0 while there is neither.
 inline double inertia_ratio(double kinetic, double strain) {
-  return kinetic > 0 ? kinetic / std::max(strain, std::numeric_limits<double>::min()) : 0;
+  return kinetic > 0 ? kinetic / std::max(strain, kinetic / kLargestInertiaRatio) : 0;
 }
 
 /// Watches kinetic against strain energy in quasi-static stages.

@@ -33,6 +33,8 @@ class Recorder : public ResultSink {
     throw std::runtime_error("no series " + name);
   }
   double last(const std::string& name, int component = 0) const { return series(name, component).back(); }
+  const std::vector<std::vector<double>>& rows() const { return rows_; }
+  const std::vector<SeriesInfo>& info() const { return info_; }
 
   std::vector<Frame> frames;
   std::vector<double> times;
