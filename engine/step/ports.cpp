@@ -140,9 +140,24 @@ class WaterPass {
         x[port.d] += port.inward * overshoot;
         return true;
       }
+      if (const int beside = left_through(port.d, x); beside >= 0) q.port = beside, q.depth = -0.5;
       if (q.depth > -0.5) put(q);
       return false;
     });
+  }
+
+  /// Open port that a straddler has passed along another axis than its own, around a corner of the domain, or
+  /// −1. Where there is none it stays inside.
+  int left_through(int own, Vec<D>& x) {
+    const Cell<D> cell = s_.grid.cell_of(x);
+    for (int d = 0; d < D; ++d) {
+      const double low = s_.grid.origin[d], high = low + s_.grid.cells[d] * s_.grid.h;
+      if (d == own || (x[d] >= low && x[d] <= high)) continue;
+      const int k = s_.port_of[d][s_.grid.index(cell) + (x[d] > high ? s_.grid.stride[d] : 0)] - 1;
+      if (k >= 0 && s_.ports[k].open) return k;
+    }
+    keep_inside(x, own);
+    return -1;
   }
 
   /// Points that have come within half a spacing of an open port.
@@ -168,6 +183,21 @@ class WaterPass {
         put(s_.straddlers.back());
         caught_[p] = 1;
       }
+    if (!caught_[p]) keep_inside(s_.water.x[p], -1);
+  }
+
+  /// A point that went out through a port at an angle, to behind a wall or a shut one. Not along axis `own`.
+  void keep_inside(Vec<D>& x, int own) {
+    bool moved = false;
+    for (int d = 0; d < D; ++d) {
+      if (d == own) continue;
+      const double low = s_.grid.origin[d], high = low + s_.grid.cells[d] * s_.grid.h;
+      const double margin = 1e-6 * s_.grid.h;
+      if (x[d] >= low && x[d] <= high) continue;
+      x[d] = std::clamp(x[d], low + margin, high - margin);
+      moved = true;
+    }
+    s_.interventions.clipped_points += moved;
   }
 
   void remove_gone() {
