@@ -62,9 +62,10 @@ SlowProcess slow_process(const Scene& scene, std::size_t stage) {
     slow.transit_time += largest / height * thickness * slowness;
     if (body.kind != BodyKind::saturated_soil) continue;
     resistance += thickness * material.drag.resistivity(soil.porosity);
-    // Pore water stores too: soft water beside stiff grains sets the pace.
+    // Pore water stores too: soft water beside stiff grains sets the pace. The larger of the two, which is
+    // within a factor of two of their sum, so that stiff water changes nothing.
     const double stored = scene.water.bulk_modulus ? soil.porosity / *scene.water.bulk_modulus : 0;
-    compliance += thickness * (1 / modulus + stored);
+    compliance += thickness * std::max(1 / modulus, stored);
   }
   if (resistance > 0) slow.process_time = std::min(slow.process_time, resistance * compliance);
   if (!scene.stages[stage].quasi_static) return slow;
