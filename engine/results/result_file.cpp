@@ -1,5 +1,6 @@
 #include "engine/results/result_file.hpp"
 
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -8,6 +9,7 @@
 #include <optional>
 #include <stdexcept>
 #include <system_error>
+#include <tuple>
 
 #include "engine/results/disk_space.hpp"
 #include "engine/results/h5.hpp"
@@ -83,6 +85,23 @@ int descriptor(const h5::Handle& file) {
   void* pointer = nullptr;
   h5::check(H5Fget_vfd_handle(file.get(), H5P_DEFAULT, &pointer), "cannot reach the file");
   return *static_cast<int*>(pointer);
+}
+
+/// Tells the file's heading where the file will end, before a flush writes what lies behind the old end: HDF5
+/// itself does so last, and a kill between the two leaves names that point beyond the end.
+void announce_end(const h5::Handle& file) {
+  haddr_t end = 0;
+  h5::check(H5Fget_eoa(file.get(), &end), "cannot find the file's end");
+  const int number = descriptor(file);
+  unsigned char version = 0xff;
+  constexpr off_t version_at = 8;
+  if (pread(number, &version, 1, version_at) != 1 || version > 1) return;
+  const off_t end_at = version == 0 ? 40 : 44;  // HDF5 file format, superblock versions 0 and 1
+  struct stat status {};
+  if (fstat(number, &status) != 0) return;
+  const std::uint64_t stored = end;  // little-endian, as the machine
+  if (status.st_size < static_cast<off_t>(end) && ftruncate(number, static_cast<off_t>(end)) != 0) return;
+  std::ignore = pwrite(number, &stored, sizeof stored, end_at);
 }
 
 std::string frame_name(std::size_t index) {
@@ -200,7 +219,10 @@ struct ResultFile::State {
     xdmf->to_disk();
   }
 
-  void flush() { h5::check(H5Fflush(file.get(), H5F_SCOPE_LOCAL), "cannot flush"); }
+  void flush() {
+    announce_end(file);
+    h5::check(H5Fflush(file.get(), H5F_SCOPE_LOCAL), "cannot flush");
+  }
 
   /// Makes room, then writes and flushes. Without room nothing has changed and the file can go on.
   template <class Work>
