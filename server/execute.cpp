@@ -98,6 +98,9 @@ RunReport run_into(const std::string& folder, const std::string& case_text, cons
   // The history that its error is estimated from is kept in memory only: such a run starts again.
   const bool with_error = scene.numerics.error_estimate != ErrorEstimate::none;
   if (with_error && resume == Resume::if_possible) resume = Resume::never;
+  if (with_error && resume == Resume::required)
+    return failed("no_checkpoint",
+                  "a run with numerics.error_estimate cannot be resumed; run it from its beginning");
   Opened opened;
   if (resume != Resume::never) opened = reopen(folder, documents, monitor);
   if (!opened.file && resume == Resume::required)

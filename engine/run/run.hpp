@@ -178,7 +178,7 @@ struct RunOptions {
   double checkpoint_interval = 0;
   const Checkpoint* resume = nullptr;  ///< of the same scene; goes on from it
   /// Steps after which a state counts as good and is kept in memory. From it a run goes on with shorter steps
-  /// when one failed. Keeping it costs about as much as half a step. What the sink gets is held back until
+  /// when one failed. Keeping it costs about a third of a step. What the sink gets is held back until
   /// then.
   long good_every = 128;
   int retries = 6;  ///< times that steps are halved before a failure is one of the run; 0: none

@@ -36,7 +36,7 @@ template <class A, int D>
 void keep_block(A& a, State<D>& s, int block) {
   s.blocks.cells(s.grid, block, true, [&](int i, const Cell<D>&) {
     for (int d = 0; d < D; ++d) {
-      a(s.flow[d][i], s.speeds[d][i]);
+      a(s.flow[d][i]);
       if (!s.follower[d].empty()) a(s.follower[d][i]);
       std::uint8_t lifted = s.soil_walls.separation(d, i);
       a(lifted);
@@ -49,8 +49,7 @@ void keep_block(A& a, State<D>& s, int block) {
 /// Velocities behind plates.
 template <class A, int D>
 void keep_ghosts(A& a, State<D>& s) {
-  for (std::size_t i = s.grid.count(); i < s.flow[kPlateAxis].size(); ++i)
-    a(s.flow[kPlateAxis][i], s.speeds[kPlateAxis][i]);
+  for (std::size_t i = s.grid.count(); i < s.flow[kPlateAxis].size(); ++i) a(s.flow[kPlateAxis][i]);
 }
 
 template <class A, int D>
