@@ -4,17 +4,16 @@
 #include <unistd.h>
 
 #include <array>
-#include <cerrno>
 #include <filesystem>
 #include <fstream>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
-#include <system_error>
 #include <thread>
 
 #include "api/case_json.hpp"
+#include "engine/results/disk_space.hpp"
 #include "engine/results/result_file.hpp"
 #include "engine/study/error_estimate.hpp"
 #include "server/files.hpp"
@@ -74,6 +73,7 @@ Opened reopen(const std::string& folder, const Documents& documents, RunMonitor&
       auto file = std::make_unique<ResultFile>(folder, documents, &from);
       return {std::move(file), std::move(from)};
     } catch (const std::runtime_error& error) {
+      if (disk_refusal(error.what()) != DiskRefusal::none) throw;  // it is good, and its time will come
       monitor.log(path.filename().string() + " cannot be used: " + error.what());
     }
   return {};
@@ -81,11 +81,8 @@ Opened reopen(const std::string& folder, const Documents& documents, RunMonitor&
 
 /// Whether a run failed because of what a kill had left of its results.
 bool found_damage(const RunReport& report) {
-  if (report.status != RunStatus::failed || report.failure.code != "output") return false;
-  for (const int reason : {ENOSPC, EDQUOT, EFBIG, EIO})
-    if (report.failure.message.find(std::generic_category().message(reason)) != std::string::npos)
-      return false;
-  return true;
+  return report.status == RunStatus::failed && report.failure.code == "output" &&
+         disk_refusal(report.failure.message) == DiskRefusal::none;
 }
 
 /// Runs a valid scene; exceptions mean that its results could not be stored.

@@ -62,7 +62,7 @@ void get_readyz(Service& service, const Call&, httplib::Response& response) {
     spdlog::error("not ready: {}", error.what());
     fail(503, "the store cannot be written");
   }
-  const std::string shortage = disk_shortage(service.settings, service.folder, service.store.results_bytes());
+  const std::string shortage = service.runner.shortage();
   if (!shortage.empty()) fail(503, shortage);
   response.set_content(R"({"status":"ready"})", "application/json");
 }
