@@ -1,5 +1,6 @@
 #include "server/runner.hpp"
 
+#include <pthread.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
@@ -14,6 +15,8 @@
 namespace quicksand {
 namespace {
 
+/// By which `top` and tests/faults/load.py tell what computes from what serves.
+constexpr const char* run_thread_name = "quicksand-run";
 /// Before a worker tries again after the store refused.
 constexpr std::chrono::seconds store_retry{1};
 
@@ -137,6 +140,7 @@ std::shared_ptr<Runner::Active> Runner::take_next(bool short_runs_only) {
 }
 
 void Runner::work(bool short_runs_only) {
+  ::pthread_setname_np(::pthread_self(), run_thread_name);  // inherited by the threads of its runs
   while (const auto active = take_next(short_runs_only)) {
     bell_.ring();
     execute_one(*active);
