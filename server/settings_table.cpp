@@ -78,7 +78,7 @@ const std::vector<Setting>& settings_table() {
       {Kind::count, "max_readers", &Settings::max_readers, 0, 64,
        "Answers with frames or series at a time; the next one gets 503. Each takes up to\n"
        "max_data_bytes of memory until its client has read it."},
-      {Kind::count, "max_downloads", &Settings::max_downloads, 1, 256,
+      {Kind::count, "max_downloads", &Settings::max_downloads, 0, 256,
        "Result files and logs that are sent at a time; the next one gets 503."},
       {Kind::bytes, "max_data_bytes", &Settings::max_data_bytes, 1 << 10, 1 << 30,
        "Most data in one answer with a frame or series; what would be larger gets 400."},
