@@ -2,6 +2,7 @@
 
 #include "api/case_json.hpp"
 #include "api/openapi.hpp"
+#include "engine/run/engine_build.hpp"
 #include "server/http_problem.hpp"
 #include "server/limits.hpp"
 #include "server/route_handlers.hpp"
@@ -39,6 +40,7 @@ void get_service_info(Service& service, const Call&, httplib::Response& response
         limits[setting.name] = service.settings.*(*count);
   response.set_content(dump({{"name", "quicksand"},
                              {"version", engine_version},
+                             {"engine_build", engine_build()},
                              {"case_formats", {"quicksand.case/1"}},
                              {"started", rfc3339(service.started)},
                              {"workers", service.settings.workers},

@@ -58,7 +58,7 @@ void naming_the_file(Work&& work) {
 
 std::string run_identity(const std::map<std::string, std::string>& documents) {
   std::string identity;
-  for (const char* name : {"engine_version", "case_resolved"})
+  for (const char* name : {"engine_version", "engine_build", "case_resolved"})
     if (const auto document = documents.find(name); document != documents.end())
       identity += document->second + "\n";
   return identity;

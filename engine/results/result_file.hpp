@@ -8,8 +8,8 @@
 
 namespace quicksand {
 
-/// What a run must share with a checkpoint to go on from it: the resolved case and the engine's version among
-/// its documents.
+/// What a run must share with a checkpoint to go on from it: the resolved case, and the engine's version and
+/// build, among its documents.
 std::string run_identity(const std::map<std::string, std::string>& documents);
 
 /// Removes results, finished or not, and checkpoints. Throws std::filesystem::filesystem_error.
