@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "engine/results/checkpoint_file.hpp"
 #include "engine/results/result_file.hpp"
 #include "server/sha256.hpp"
 
@@ -16,6 +17,11 @@ constexpr std::array<const char*, 3> result_names{"result.vtkhdf", "result.xdmf"
 void remove_results(const std::filesystem::path& run_folder) {
   remove_result_files(run_folder.string());
   for (const char* name : {"run.json", "run.json.part"}) std::filesystem::remove(run_folder / name);
+}
+
+void keep_unfinished_results(const std::filesystem::path& run_folder) {
+  remove_checkpoints(run_folder);
+  finish_result_files(run_folder.string());
 }
 
 std::vector<StoredResult> collect_results(const std::filesystem::path& run_folder) {

@@ -12,9 +12,8 @@ std::filesystem::path run_log_file(const StateFolder& folder, const std::string&
 }
 
 StoreMonitor::StoreMonitor(const StoredRun& run, Store& store, const StateFolder& folder, ChangeBell& bell,
-                           Metrics& metrics, const std::atomic<bool>& cancel,
-                           const std::atomic<bool>& stopping)
-    : id_(run.id), store_(store), bell_(bell), metrics_(metrics), cancel_(cancel), stopping_(stopping) {
+                           Metrics& metrics, const RunSignals& signals)
+    : id_(run.id), store_(store), bell_(bell), metrics_(metrics), signals_(signals) {
   auto sink = std::make_shared<spdlog::sinks::basic_file_sink_mt>(run_log_file(folder, id_).string());
   log_ = std::make_shared<spdlog::logger>(id_, std::move(sink));
   log_->set_pattern("%Y-%m-%dT%H:%M:%S.%eZ run=%n %v", spdlog::pattern_time_type::utc);

@@ -56,9 +56,9 @@ const std::vector<Setting>& settings_table() {
        "Longest time that a run may compute, s; then it ends with the code time_limit. 0: no bound."},
 
       {Kind::bytes, "disk_reserve", &Settings::disk_reserve, 0, INT64_MAX,
-       "Stays free on the disk of the state folder. With less, new runs get 507, those that compute end "
+       "Stays free on the disk of the state folder. With less, new runs get 507, those that compute stop "
        "with\n"
-       "the code disk_full, those that wait go on waiting until there is room again."},
+       "the code disk_full and wait like all others; they go on from there when there is room again."},
       {Kind::bytes, "disk_quota", &Settings::disk_quota, 0, INT64_MAX,
        "All results together; beyond it the same happens. 0: no bound."},
       {Kind::count, "keep_days", &Settings::keep_days, 0, 36500,
@@ -78,6 +78,8 @@ const std::vector<Setting>& settings_table() {
       {Kind::count, "max_readers", &Settings::max_readers, 0, 64,
        "Answers with frames or series at a time; the next one gets 503. Each takes up to\n"
        "max_data_bytes of memory until its client has read it."},
+      {Kind::count, "max_downloads", &Settings::max_downloads, 0, 256,
+       "Result files and logs that are sent at a time; the next one gets 503."},
       {Kind::bytes, "max_data_bytes", &Settings::max_data_bytes, 1 << 10, 1 << 30,
        "Most data in one answer with a frame or series; what would be larger gets 400."},
   };
