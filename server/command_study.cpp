@@ -17,7 +17,7 @@ namespace quicksand {
 int tradeoff_command(const TradeoffCommand& command) {
   const auto text = read_case_file(command.case_file);
   if (!text) return exit_status::bad_input;
-  const ParsedCase parsed = parse_case(*text, command.preset);
+  const ParsedCase parsed = parse_case(*text, command.preset, read_calibration(user_calibration()));
   if (!parsed.scene) {
     print_faults(command.case_file, parsed.faults);
     return exit_status::bad_input;

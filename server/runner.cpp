@@ -8,6 +8,7 @@
 #include <system_error>
 
 #include "engine/results/checkpoint_file.hpp"
+#include "server/calibration_file.hpp"
 #include "server/execute.hpp"
 #include "server/limits.hpp"
 #include "server/run_files.hpp"
@@ -172,7 +173,7 @@ Runner::End Runner::compute(Active& active) {
   options.checkpoint_interval = static_cast<double>(settings_.checkpoint_s);
   monitor.log("started, engine " + run.engine_version + ", threads " + std::to_string(options.threads));
   const Execution done = execute(store_.case_text(run.id).value_or(""), {}, folder.string(), monitor, options,
-                                 Resume::if_possible);
+                                 Resume::if_possible, read_calibration(state_calibration(folder_.path())));
   monitor.flush();
 
   End end;
