@@ -6,7 +6,7 @@
 
 #include "api/case_json.hpp"
 #include "engine/study/calibrate.hpp"
-#include "engine/study/ladder.hpp"
+#include "engine/study/tradeoff.hpp"
 #include "server/calibration_file.hpp"
 #include "server/commands.hpp"
 #include "server/files.hpp"
@@ -17,7 +17,7 @@ namespace quicksand {
 int tradeoff_command(const TradeoffCommand& command) {
   const auto text = read_case_file(command.case_file);
   if (!text) return exit_status::bad_input;
-  const ParsedCase parsed = parse_case(*text, command.preset);
+  const ParsedCase parsed = parse_case(*text, command.preset, read_calibration(user_calibration()));
   if (!parsed.scene) {
     print_faults(command.case_file, parsed.faults);
     return exit_status::bad_input;
@@ -44,6 +44,7 @@ int tradeoff_command(const TradeoffCommand& command) {
     std::filesystem::create_directories(folder);
     write_atomically(folder / "tradeoff.csv", csv);
     write_atomically(folder / "tradeoff.svg", tradeoff_svg(tradeoff, parsed.scene->name));
+    write_atomically(folder / "tradeoff.png", tradeoff_png(tradeoff, parsed.scene->name));
   } catch (const std::exception& error) {
     std::cerr << command.out << ": " << error.what() << '\n';
     return exit_status::not_written;

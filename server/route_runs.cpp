@@ -26,7 +26,7 @@ struct PlannedCase {
 
 /// The body as a scene that this service may run, or 422 with every fault.
 PlannedCase plan_case(const Settings& settings, const Calibration& machine, const std::string& text) {
-  ParsedCase parsed = parse_case(text);
+  ParsedCase parsed = parse_case(text, {}, machine);
   Problem problem;
   problem.status = 422;
   problem.detail = "the case cannot be run";

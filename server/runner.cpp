@@ -5,7 +5,9 @@
 
 #include <algorithm>
 
+#include "engine/results/checkpoint_file.hpp"
 #include "engine/results/disk_space.hpp"
+#include "server/calibration_file.hpp"
 #include "server/execute.hpp"
 #include "server/limits.hpp"
 #include "server/run_files.hpp"
@@ -180,7 +182,7 @@ Runner::End Runner::compute(Active& active) {
   options.checkpoint_interval = static_cast<double>(settings_.checkpoint_s);
   monitor.log("started, engine " + run.engine_version + ", threads " + std::to_string(options.threads));
   const Execution done = execute(store_.case_text(run.id).value_or(""), {}, folder.string(), monitor, options,
-                                 Resume::if_possible);
+                                 Resume::if_possible, read_calibration(state_calibration(folder_.path())));
   monitor.flush();
 
   End end;
