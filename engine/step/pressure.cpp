@@ -25,7 +25,7 @@ double speed_in(const State<D>& s, int cell) {
   double speed = 0;
   for (int d = 0; d < D; ++d)
     for (int face : {cell, cell + s.grid.stride[d]})
-      speed = std::max(speed, std::abs(s.flow[d][face].water_old));
+      speed = std::max(speed, std::abs(s.speeds[d][face].water_old));
   return speed;
 }
 
@@ -89,7 +89,7 @@ void assemble(State<D>& s, PressureSystem<D>& m, double dt) {
           if (s.water_walls.closed(d, face)) continue;
           const FaceFlow& f = s.flow[d][face];
           const double at = kAxial ? s.grid.face_radius(d, face) : 1;
-          rhs += (1 - 2 * side) * at * f.flux() * inverse_h;
+          rhs += (1 - 2 * side) * at * f.flux(s.speeds[d][face]) * inverse_h;
           const double beta = at * f.flux_response() * inverse_h2;
           const CellState& o = s.cell[other];
           if (const Port<D>* port = port_at(s, d, face)) {
