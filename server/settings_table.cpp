@@ -57,7 +57,9 @@ const std::vector<Setting>& settings_table() {
        "runs\n"
        "take more than planned, the newest is ended with the code memory_limit."},
       {Kind::count, "max_run_s", &Settings::max_run_s, 0, 366 * 24 * 3600,
-       "Longest time that a run may compute, s; then it ends with the code time_limit. 0: no bound."},
+       "Longest time that a run may compute, s, what it computed before it was interrupted included; then "
+       "it\n"
+       "ends with the code time_limit. 0: no bound."},
 
       {Kind::bytes, "disk_reserve", &Settings::disk_reserve, 0, INT64_MAX,
        "Stays free on the disk of the state folder. With less, new runs get 507, those that compute stop "
