@@ -23,6 +23,7 @@ StoreMonitor::StoreMonitor(const StoredRun& run, Store& store, const StateFolder
 void StoreMonitor::progress(const Progress& now) {
   metrics_.stepped(now.step - last_.step);
   last_ = now;
+  signals_.computed_s = now.wall_seconds;
   unwritten_ = true;
   const auto time = std::chrono::steady_clock::now();
   if (time < next_write_) return;

@@ -17,11 +17,12 @@ namespace quicksand {
 /// `<runs>/<id>/run.log`: what happened in a run, every line with the run's id.
 std::filesystem::path run_log_file(const StateFolder& folder, const std::string& id);
 
-/// What others ask of a run.
+/// What others ask of a run and what they watch of it.
 struct RunSignals {
   const std::atomic<bool>& cancel;    ///< ends it within one step
   const std::atomic<bool>& suspend;   ///< ends it so that it can go on from there
   const std::atomic<bool>& stopping;  ///< likewise
+  std::atomic<double>& computed_s;    ///< wall time, before interruptions included
 };
 
 /// Carries a run's progress into the store, its words into its log and cancellation into the run.

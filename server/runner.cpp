@@ -176,7 +176,8 @@ Runner::End Runner::compute(Active& active) {
   const StoredRun& run = active.run;
   const auto folder = folder_.run(run.id);
   std::filesystem::create_directories(folder);
-  StoreMonitor monitor(run, store_, folder_, bell_, metrics_, {active.cancel, active.suspend, stopping_});
+  StoreMonitor monitor(run, store_, folder_, bell_, metrics_,
+                       {active.cancel, active.suspend, stopping_, active.computed_s});
   RunOptions options;
   options.threads = threads_for(settings_, run.cost);
   options.checkpoint_interval = static_cast<double>(settings_.checkpoint_s);

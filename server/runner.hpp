@@ -47,6 +47,7 @@ class Runner {
     StoredRun run;
     std::chrono::steady_clock::time_point begin = std::chrono::steady_clock::now();
     std::atomic<bool> cancel{false}, suspend{false};
+    std::atomic<double> computed_s{0};  ///< wall time, before interruptions included
     std::optional<Failure> limit;  ///< guarded by mutex_; why it is ended or suspended, when a limit asks
   };
   struct End {

@@ -12,6 +12,10 @@
 namespace quicksand {
 namespace {
 
+double seconds(std::chrono::steady_clock::duration time) {
+  return std::chrono::duration<double>(time).count();
+}
+
 /// Between two looks at what the runs take.
 constexpr std::chrono::seconds guard_interval{1};
 constexpr Milliseconds day_ms = 24LL * 3600 * 1000;
@@ -91,7 +95,9 @@ void Runner::enforce_limits() {
   if (active_.empty()) return;
   const auto now = std::chrono::steady_clock::now();
   for (const auto& [id, active] : active_)
-    if (const auto failure = out_of_time(settings_, now - active->begin)) end_for(*active, *failure);
+    if (const auto failure =
+            out_of_time(settings_, std::max(seconds(now - active->begin), active->computed_s.load())))
+      end_for(*active, *failure);
   suspend_without_room();
   if (const auto failure = out_of_memory(settings_, resident_memory())) {  // the newest made it too much
     const auto newest = std::max_element(active_.begin(), active_.end(), [](const auto& a, const auto& b) {

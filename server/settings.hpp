@@ -22,7 +22,7 @@ struct Settings {
   Count short_workers = 1;
   Count short_run_s = 600;
   Count threads_per_run = 0;
-  Count points_per_thread = 2000;
+  Count points_per_thread = 5000;
 
   Count checkpoint_s = 60;
 

@@ -225,8 +225,8 @@ class Run {
     p.time_step = last_.dt;
     p.bound = bound;
     p.frames = outputs_.frames_written();
-    const double wall = wall_before_ + seconds_since(start_);
-    p.eta_s = p.fraction > 0 ? wall * (1 - p.fraction) / p.fraction : 0;
+    p.wall_seconds = wall_before_ + seconds_since(start_);
+    p.eta_s = p.fraction > 0 ? p.wall_seconds * (1 - p.fraction) / p.fraction : 0;
     monitor_.progress(p);
   }
 

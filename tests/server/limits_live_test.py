@@ -68,6 +68,21 @@ class TimeLimitTest(ServerTest):
         self.assertEqual([result["name"] for result in results], ["result.vtkhdf", "result.xdmf", "run.json"])
 
 
+class TimeLimitAcrossRestartsTest(ServerTest):
+    options = ("--set", "max_run_s=5")
+
+    def test_what_was_computed_before_counts(self):
+        run_id = self.submit(endless_case())
+        self.server.wait_for(run_id, "running")
+        time.sleep(3.5)
+        self.server.stop()
+        self.server.start()
+        begin = time.monotonic()
+        run = self.server.wait_for(run_id, "failed", seconds=20)
+        self.assertEqual(run["failure"]["code"], "time_limit")
+        self.assertLess(time.monotonic() - begin, 4.5)
+
+
 class PriorityNeedsAnAdminTest(ServerTest):
     def test_above_zero(self):
         key = {"X-API-Key": make_key(self.state, "anna", "submit")}
