@@ -17,6 +17,7 @@ constexpr std::size_t chunk_bytes = 1 << 16;
 const char* media_type(const std::string& name) {
   if (name.ends_with(".json")) return "application/json";
   if (name.ends_with(".vtkhdf")) return "application/x-hdf5";
+  if (name.ends_with(".png")) return "image/png";
   return "application/octet-stream";  // .xdmf among them: text would be compressed under its strong ETag
 }
 
