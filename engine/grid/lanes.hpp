@@ -3,6 +3,11 @@
 // vector types, element by element; where there are no such instructions it makes scalar code of it. What is
 // written for any T below works on a double and on lanes alike.
 
+#include <cmath>
+#ifdef __AVX512F__
+#include <immintrin.h>
+#endif
+
 /// Lanes go from function to function only inside others: how they are passed depends on the processor that a
 /// file is compiled for.
 #define QUICKSAND_INLINE inline __attribute__((always_inline))
@@ -20,6 +25,10 @@ template <int N>
 using Lanes = typename LanesOf<N>::type;
 template <int N>
 using IntLanes = typename LanesOf<N>::integers;
+
+/// Points that are worked out together.
+inline constexpr int kBatch = 8;
+using BatchLanes = Lanes<kBatch>;
 
 /// The N doubles that begin with `first`, which lie one after the other.
 template <int N>
@@ -50,6 +59,24 @@ template <class T>
 QUICKSAND_INLINE T clamped(const T& v, const T& low, const T& high) {
   const T above = where(v > low, v, low);  // not a number becomes `low`
   return where(above < high, above, high);
+}
+
+QUICKSAND_INLINE double square_root(double v) { return std::sqrt(v); }
+QUICKSAND_INLINE BatchLanes square_root(const BatchLanes& v) {
+#ifdef __AVX512F__
+  return reinterpret_cast<BatchLanes>(_mm512_maskz_sqrt_pd(0xff, reinterpret_cast<__m512d>(v)));
+#else
+  BatchLanes root;
+  for (int k = 0; k < kBatch; ++k) root[k] = std::sqrt(v[k]);
+  return root;
+#endif
+}
+/// Whether the mask is true in one of the first `count` lanes.
+template <class Mask>
+QUICKSAND_INLINE bool any_of(const Mask& mask, int count) {
+  bool any = false;
+  for (int k = 0; k < count; ++k) any = any || mask[k] != 0;
+  return any;
 }
 
 }  // namespace quicksand

@@ -165,9 +165,8 @@ class WaterPass {
     caught_.assign(s_.water.size(), 0);
     for (const Straddler& q : s_.straddlers) caught_[q.point] = 1;
     for (const int place : s_.port_blocks) {
-      const int b = s_.blocks.number_of(place);
-      for (auto i = s_.water_blocks.begin[b]; i < s_.water_blocks.begin[b + 1]; ++i)
-        catch_point(s_.water_blocks.order[i]);
+      const PointRange points = s_.blocks.points(s_.water_blocks, s_.blocks.number_of(place));
+      for (auto i = points.begin; i < points.end; ++i) catch_point(s_.water_blocks.order[i]);
     }
   }
   void catch_point(std::uint32_t p) {

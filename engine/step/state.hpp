@@ -21,8 +21,8 @@
 
 namespace quicksand {
 
-/// What points leave on a face. Summed over points; per face, not per volume.
-struct FaceSums {
+/// What points leave on a face. Summed over points; per face, not per volume. Soil adds all of it at once.
+struct alignas(64) FaceSums {
   double soil_mass = 0;       ///< kg
   double grains = 0;          ///< m³
   double soil_bulk = 0;       ///< m³, grains and pores
@@ -230,10 +230,11 @@ struct State {
   Walls<D> soil_walls;   ///< the same and the surfaces of fixed soil
   Constants<D> constants;
 
-  bool has_water = false;  ///< there is water, or it can come in; else all that is about water stays zero
-  bool has_soil = false;   ///< there are grains, moving or fixed
-  SoilPoints<D> soil;      ///< moving grains
-  SoilPoints<D> fixed;     ///< grains held in place
+  bool has_water = false;   ///< there is water, or it can come in; else all that is about water stays zero
+  bool has_soil = false;    ///< there are grains, moving or fixed
+  bool counts_room = true;  ///< what soil takes of cells is asked for: by water, plates or samples
+  SoilPoints<D> soil;       ///< moving grains
+  SoilPoints<D> fixed;      ///< grains held in place
   WaterPoints<D> water;
   std::vector<char> removed;  ///< per body, whether a stage took it away; empty while none did
   BlockList soil_blocks, water_blocks;
