@@ -155,6 +155,7 @@ TradeoffCost tradeoff_cost(const Scene& scene, double budget, const Calibration&
     if (budget > 0 && cost.seconds + kWorthStarting * plan.seconds > budget) continue;
     cost.seconds += std::max(plan.seconds, std::min(kRepeatSeconds, kRepeats * plan.seconds));
     cost.memory_bytes = std::max(cost.memory_bytes, plan.memory_bytes);
+    cost.points = std::max(cost.points, plan.soil_points + plan.fixed_soil_points + plan.water_points);
   }
   return cost;
 }

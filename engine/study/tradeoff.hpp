@@ -30,6 +30,7 @@ struct Tradeoff {
 /// CPU seconds and memory that the whole ladder is estimated to take, at most the budget (0: none).
 struct TradeoffCost {
   double seconds = 0, memory_bytes = 0;
+  std::size_t points = 0;  ///< of the largest rung
 };
 TradeoffCost tradeoff_cost(const Scene& scene, double budget, const Calibration& machine = {});
 
