@@ -131,10 +131,11 @@ RunReport run_into(const std::string& folder, const std::string& case_text, cons
 }  // namespace
 
 Execution execute(const std::string& case_text, const std::optional<Preset>& preset,
-                  const std::string& folder, RunMonitor& monitor, const RunOptions& options, Resume resume) {
+                  const std::string& folder, RunMonitor& monitor, const RunOptions& options, Resume resume,
+                  const Calibration& machine) {
   Execution execution;
   try {
-    ParsedCase parsed = parse_case(case_text, preset);
+    ParsedCase parsed = parse_case(case_text, preset, machine);
     if (!parsed.scene) {
       execution.faults = std::move(parsed.faults);
       return execution;

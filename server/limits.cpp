@@ -23,6 +23,10 @@ RunCost cost_of(const Plan& plan) {
   return {static_cast<std::int64_t>(points), plan.memory_bytes, plan.seconds};
 }
 
+RunCost cost_of(const TradeoffCost& cost) {
+  return {static_cast<std::int64_t>(cost.points), cost.memory_bytes, cost.seconds};
+}
+
 double memory_limit(const Settings& settings) {
   return settings.max_memory > 0 ? static_cast<double>(settings.max_memory)
                                  : default_memory_share * machine_memory();

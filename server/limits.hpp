@@ -6,6 +6,7 @@
 
 #include "engine/plan/plan.hpp"
 #include "engine/run/run.hpp"
+#include "engine/study/tradeoff.hpp"
 #include "server/settings.hpp"
 #include "server/state_folder.hpp"
 #include "server/store.hpp"
@@ -13,6 +14,7 @@
 namespace quicksand {
 
 RunCost cost_of(const Plan& plan);
+RunCost cost_of(const TradeoffCost& cost);
 
 /// Bytes that the runs may take together.
 double memory_limit(const Settings& settings);

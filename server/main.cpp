@@ -62,7 +62,7 @@ void add_local_commands(CLI::App& app, CommandLine& line) {
 
   CLI::App* tradeoff = app.add_subcommand("tradeoff", "error and cost of a case under other settings");
   tradeoff->add_option("CASE", line.tradeoff.case_file, "case file (JSON)")->required();
-  tradeoff->add_option("--out", line.tradeoff.out, "folder for tradeoff.csv and tradeoff.svg");
+  tradeoff->add_option("--out", line.tradeoff.out, "folder for tradeoff.csv, .svg and .png, and run.json");
   tradeoff->add_option("--reference", line.tradeoff.reference,
                        "CSV of curves: time, then series by name; if absent, the run with the finest cells");
   tradeoff->add_option("--threads", line.tradeoff.threads, "0: all cores")->check(CLI::Range(0, 1024));
@@ -149,6 +149,10 @@ void add_remote_commands(CLI::App& app, CommandLine& line) {
   add_preset(submit, line.submit.preset);
   submit->add_option("--label", line.submit.label, "a word to find the run by");
   submit->add_option("--priority", line.submit.priority, "-10 to 10, higher ones first; above 0 for admins");
+  submit->add_flag("--tradeoff", line.submit.tradeoff, "measure the case's ladder instead of running it");
+  submit->add_option("--budget", line.submit.budget, "with --tradeoff: s of CPU time for all of it")
+      ->check(CLI::Range(1, 1'000'000))
+      ->needs("--tradeoff");
   submit->add_flag("--wait", line.submit.wait, "show progress until it ends");
   submit->callback([&line] {
     line.submit.url = line.url;

@@ -18,6 +18,7 @@ constexpr int full_retry_s = 5;  ///< s, `Retry-After` when all downloads are ta
 const char* media_type(const std::string& name) {
   if (name.ends_with(".json")) return "application/json";
   if (name.ends_with(".vtkhdf")) return "application/x-hdf5";
+  if (name.ends_with(".png")) return "image/png";
   return "application/octet-stream";  // .xdmf among them: text would be compressed under its strong ETag
 }
 

@@ -5,12 +5,15 @@
 
 #include <algorithm>
 
+#include "engine/results/checkpoint_file.hpp"
 #include "engine/results/disk_space.hpp"
+#include "server/calibration_file.hpp"
 #include "server/execute.hpp"
 #include "server/limits.hpp"
 #include "server/run_files.hpp"
 #include "server/run_json.hpp"
 #include "server/run_monitor.hpp"
+#include "server/tradeoff_run.hpp"
 
 namespace quicksand {
 namespace {
@@ -177,11 +180,15 @@ Runner::End Runner::compute(Active& active) {
   StoreMonitor monitor(run, store_, folder_, bell_, metrics_,
                        {active.cancel, active.suspend, stopping_, active.computed_s});
   RunOptions options;
-  options.threads = threads_for(settings_, run.cost);
+  options.threads = run.kind == RunKind::tradeoff ? 1 : threads_for(settings_, run.cost);
   options.checkpoint_interval = static_cast<double>(settings_.checkpoint_s);
   monitor.log("started, engine " + run.engine_version + ", threads " + std::to_string(options.threads));
-  const Execution done = execute(store_.case_text(run.id).value_or(""), {}, folder.string(), monitor, options,
-                                 Resume::if_possible);
+  const std::string text = store_.case_text(run.id).value_or("");
+  const Calibration machine = read_calibration(state_calibration(folder_.path()));
+  const Execution done =
+      run.kind == RunKind::tradeoff
+          ? execute_tradeoff(text, {}, folder.string(), monitor, {{}, 1, run.budget}, machine)
+          : execute(text, {}, folder.string(), monitor, options, Resume::if_possible, machine);
   monitor.flush();
 
   End end;

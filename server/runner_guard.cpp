@@ -4,6 +4,7 @@
 
 #include "api/case_json.hpp"
 #include "engine/results/checkpoint_file.hpp"
+#include "server/calibration_file.hpp"
 #include "server/limits.hpp"
 #include "server/machine.hpp"
 #include "server/run_files.hpp"
@@ -57,7 +58,8 @@ void Runner::recover() {
 void Runner::plan_what_waits() {
   for (StoredRun& run : store_.queued()) {
     if (run.cost.points == 0) {
-      const ParsedCase parsed = parse_case(store_.case_text(run.id).value_or(""));
+      const ParsedCase parsed = parse_case(store_.case_text(run.id).value_or(""), {},
+                                           read_calibration(state_calibration(folder_.path())));
       if (parsed.scene) run.cost = cost_of(make_plan(*parsed.scene));
       store_.set_cost(run.id, run.cost);
     }

@@ -27,6 +27,10 @@ inline constexpr std::array all_run_states{RunState::queued,    RunState::runnin
 /// queued, running or canceling: the run's files may still change.
 bool is_active(RunState state);
 
+/// A case computed, or the ladder of its settings measured.
+enum class RunKind { run, tradeoff };
+const char* kind_name(RunKind kind);
+
 /// What the plan says a run will take.
 struct RunCost {
   std::int64_t points = 0;  ///< 0: not planned yet
@@ -41,6 +45,8 @@ struct StoredRun {
   std::string name, label;
   std::string owner;  ///< name of the API key that submitted it; empty without keys
   int priority = 0;   ///< higher ones first
+  RunKind kind = RunKind::run;
+  double budget = 0;  ///< s of CPU time, of a tradeoff
   RunCost cost;
   std::string case_sha256, engine_version;
   Milliseconds created = 0;
@@ -64,6 +70,8 @@ struct NewRun {
   std::string owner;
   int priority = 0;
   RunCost cost;
+  RunKind kind = RunKind::run;
+  double budget = 0;  ///< s of CPU time, of a tradeoff
 };
 
 struct QueueLimits {

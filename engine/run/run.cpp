@@ -1,7 +1,5 @@
 #include "engine/run/run.hpp"
 
-#include <tbb/task_arena.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -301,19 +299,18 @@ RunReport run_in(const Scene& scene, ResultSink& sink, RunMonitor& monitor, cons
 }  // namespace
 
 RunReport run(const Scene& scene, ResultSink& sink, RunMonitor& monitor, const RunOptions& options) {
-  tbb::task_arena arena(options.threads > 0 ? options.threads : tbb::task_arena::automatic);
-  return arena.execute([&]() -> RunReport {
+  RunReport report;
+  with_threads(options.threads, [&] {
     try {
-      return scene.domain.dimension == Dimension::space ? run_in<3>(scene, sink, monitor, options)
-                                                        : run_in<2>(scene, sink, monitor, options);
+      report = scene.domain.dimension == Dimension::space ? run_in<3>(scene, sink, monitor, options)
+                                                          : run_in<2>(scene, sink, monitor, options);
     } catch (const std::exception& e) {
-      RunReport report;
       report.status = RunStatus::failed;
       report.failure = {"output", e.what(), 0, {}};
       monitor.log(std::string("failed: ") + e.what());
-      return report;
     }
   });
+  return report;
 }
 
 }  // namespace quicksand

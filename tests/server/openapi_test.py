@@ -97,6 +97,9 @@ class DocumentedIsServedTest(DocumentTest):
 
     def test_everything_documented_is_served_as_documented(self):
         case = small_case()
+        ladder = self.ask("post", "/v1/runs", 201, case, "?kind=tradeoff&budget=1").json()["id"]
+        self.server.wait_for(ladder, "succeeded")
+        self.ask("get", "/v1/runs/{id}", 200, id=ladder)
         run = self.ask("post", "/v1/runs", 201, case, "?label=x", {"Idempotency-Key": "one"}).json()["id"]
         self.server.wait_for(run, "succeeded")
         self.ask_what_goes_well(case, run)
