@@ -9,6 +9,7 @@
 #include "api/scene_to_json.hpp"
 #include "api/schema_check.hpp"
 #include "engine/plan/companions.hpp"
+#include "engine/plan/settings_choice.hpp"
 #include "engine/scene/check.hpp"
 
 namespace quicksand {
@@ -50,9 +51,23 @@ Scene read_scene(const nlohmann::json& document, const std::optional<Preset>& pr
   return scene;
 }
 
+/// The document without fault, its cells chosen where it leaves them to target_error or budget_seconds.
+void choose(const nlohmann::json& document, const Calibration& machine, ParsedCase& parsed) {
+  const auto with_preset = [&](Preset preset) {
+    std::set<std::string> refused;
+    std::vector<Fault> faults;
+    Reading reading{refused, faults};
+    return scene_from_json(document, preset, reading);
+  };
+  SettingsChoice choice = choose_settings(with_preset, machine);
+  if (choice.fault) parsed.faults.push_back(std::move(*choice.fault));
+  parsed.scene = std::move(choice.scene);
+}
+
 }  // namespace
 
-ParsedCase parse_case(const std::string& text, const std::optional<Preset>& preset) {
+ParsedCase parse_case(const std::string& text, const std::optional<Preset>& preset,
+                      const Calibration& machine) {
   ParsedCase parsed;
   JsonText json = read_json(text);
   parsed.faults = std::move(json.faults);
@@ -62,9 +77,16 @@ ParsedCase parse_case(const std::string& text, const std::optional<Preset>& pres
   append(parsed.faults, std::move(schema.faults));
   if (json.value.is_object() && parsed.faults.size() <= max_faults) {
     Scene scene = read_scene(json.value, preset, std::move(schema.refused), parsed.faults);
-    if (parsed.faults.empty())
-      if (auto fault = no_companion(scene)) parsed.faults.push_back(std::move(*fault));
+    Numerics& numerics = scene.numerics;
+    if (preset && numerics.chosen.empty()) numerics.target_error.reset(), numerics.budget_seconds.reset();
+    const bool open = (numerics.target_error || numerics.budget_seconds) && numerics.chosen.empty();
     if (parsed.faults.empty()) parsed.scene = std::move(scene);
+    if (parsed.scene && open) choose(json.value, machine, parsed);
+    if (parsed.scene)
+      if (auto fault = no_companion(*parsed.scene)) {
+        parsed.faults.push_back(std::move(*fault));
+        parsed.scene.reset();
+      }
   }
   parsed.faults = presentable(std::move(parsed.faults));
   return parsed;

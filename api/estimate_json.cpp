@@ -10,7 +10,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json cost_json(const char* name, const std::string& case_text, Preset preset, const Calibration& machine) {
-  const ParsedCase parsed = parse_case(case_text, preset);
+  const ParsedCase parsed = parse_case(case_text, preset, machine);
   if (!parsed.scene)
     return {{"preset", name}, {"fault", parsed.faults.front().pointer + ": " + parsed.faults.front().detail}};
   const Plan plan = make_plan(*parsed.scene, machine);
@@ -22,7 +22,8 @@ Json cost_json(const char* name, const std::string& case_text, Preset preset, co
           {"time_step", plan.time_step},
           {"bound", plan.bound.name},
           {"steps", plan.steps},
-          {"seconds", plan.seconds}};
+          {"seconds", plan.seconds},
+          {"expected_error", plan.expected_error}};
 }
 
 }  // namespace

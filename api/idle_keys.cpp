@@ -115,6 +115,12 @@ void check_numerics(const Place& place, const Scene& scene, bool water) {
   if (!has_quasi_static(scene)) idle(place, {"quasi_static_transits"}, "without a quasi_static stage");
   if (numerics.transfer != Transfer::flip) idle(place, {"pic_rate"}, with("transfer", numerics.transfer));
   if (numerics.time_step) idle(place, {"time_step_factor"}, "with a fixed time_step");
+  if (!numerics.target_error && !numerics.budget_seconds) {
+    if (!numerics.chosen.empty()) idle(place, {"chosen"}, "without target_error or budget_seconds");
+  } else if (numerics.chosen.empty()) {
+    idle(place, {"preset", "cell_size_factor"},
+         std::string("with ") + (numerics.target_error ? "target_error" : "budget_seconds"));
+  }
   if (!water)
     return idle(place, {"pressure", "pressure_tolerance", "drift_time"}, "in a scene without water");
   if (numerics.pressure != PressureScheme::implicit)

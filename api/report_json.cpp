@@ -40,7 +40,9 @@ Json to_json(const Plan& p) {
           {"bounds", bounds_json(p.bounds)},
           {"end_time", p.end_time},
           {"steps", p.steps},
-          {"seconds", p.seconds}};
+          {"seconds", p.seconds},
+          {"error_class", word_of(p.kind)},
+          {"expected_error", p.expected_error}};
 }
 
 Json to_json(const Ledger& l) {

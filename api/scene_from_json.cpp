@@ -1,5 +1,7 @@
 #include "api/scene_from_json.hpp"
 
+#include "engine/scene/preset.hpp"
+
 namespace quicksand {
 namespace {
 
@@ -181,6 +183,9 @@ void read_numerics(const Place& place, const std::optional<Preset>& preset, Nume
   place["quasi_static_transits"].read(numerics.quasi_static_transits);
   place["max_steps"].read(numerics.max_steps);
   read_error_estimate(place["error_estimate"], numerics.error_estimate);
+  place["target_error"].read(numerics.target_error);
+  place["budget_seconds"].read(numerics.budget_seconds);
+  place["chosen"].read(numerics.chosen);
 }
 
 /// True when the grid itself cannot be trusted, so that no geometry can be checked against it.
@@ -193,24 +198,6 @@ bool grid_broken(const Place& root) {
 }
 
 }  // namespace
-
-void apply_preset(Preset preset, Numerics& numerics) {
-  struct Choice {
-    Preset preset;
-    double cell_size_factor;    // –, cells twice or half as large: a quarter or four times the points
-    int points_per_cell;        // per axis; fewer lose track of porosity, more cost time
-    double pressure_tolerance;  // –, relative; looser saves iterations at the price of volume drift
-  };
-  constexpr Choice choices[] = {
-      {Preset::draft, 2, 2, 1e-5}, {Preset::standard, 1, 2, 1e-6}, {Preset::fine, 0.5, 2, 1e-7}};
-  numerics.preset = preset;
-  for (const Choice& choice : choices)
-    if (choice.preset == preset) {
-      numerics.cell_size_factor = choice.cell_size_factor;
-      numerics.points_per_cell = choice.points_per_cell;
-      numerics.pressure_tolerance = choice.pressure_tolerance;
-    }
-}
 
 Scene scene_from_json(const nlohmann::json& document, const std::optional<Preset>& preset, Reading& reading) {
   const Place root(document, reading);

@@ -5,9 +5,6 @@
 
 namespace quicksand {
 
-/// Sets every choice that a preset makes.
-void apply_preset(Preset preset, Numerics& numerics);
-
 /// The scene that the document describes, as far as it can be read: refused values keep their defaults, a
 /// region with a fault holds nothing, and with a fault in the grid `domain.cell_size` is 0. Adds faults that
 /// depend on the dimension. `preset` replaces the document's own.

@@ -232,6 +232,9 @@ Json Writer::numerics() const {
   json["error_estimate"] = n.error_estimate == ErrorEstimate::finer
                                ? Json("finer")
                                : Json(n.error_estimate == ErrorEstimate::coarser);
+  json["target_error"] = optional(n.target_error);
+  json["budget_seconds"] = optional(n.budget_seconds);
+  json["chosen"] = n.chosen.empty() ? Json(nullptr) : Json(n.chosen);
   return json;
 }
 

@@ -83,9 +83,11 @@ RemoteRun Client::read_run(const httplib::Response& response) const {
   return run;
 }
 
-RemoteRun Client::submit(const std::string& case_text, const std::string& label, int priority) {
-  httplib::Params params{{"priority", std::to_string(priority)}};
-  if (!label.empty()) params.emplace("label", label);
+RemoteRun Client::submit(const std::string& case_text, const Order& order) {
+  httplib::Params params{{"priority", std::to_string(order.priority)}};
+  if (!order.label.empty()) params.emplace("label", order.label);
+  if (order.tradeoff) params.emplace("kind", "tradeoff");
+  if (order.budget) params.emplace("budget", std::to_string(*order.budget));
   const std::string path = httplib::append_query_params("/v1/runs", params);
   return read_run(*checked(http_.Post(path, case_text, "application/json")));
 }

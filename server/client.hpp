@@ -34,7 +34,13 @@ class Client {
  public:
   explicit Client(const std::string& url);
 
-  RemoteRun submit(const std::string& case_text, const std::string& label, int priority);
+  struct Order {
+    std::string label;
+    int priority = 0;
+    bool tradeoff = false;
+    std::optional<int> budget;  ///< s, of a tradeoff
+  };
+  RemoteRun submit(const std::string& case_text, const Order& order);
   RemoteRun find(const std::string& id);
   std::vector<RemoteRun> list();
   RemoteRun cancel(const std::string& id);

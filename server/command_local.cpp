@@ -84,7 +84,7 @@ int run_command(const RunCommand& command) {
     options.threads = command.threads;
     options.checkpoint_interval = command.checkpoint_interval;
     done = execute(*text, command.preset, command.out, monitor, options,
-                   command.resume ? Resume::required : Resume::never);
+                   command.resume ? Resume::required : Resume::never, read_calibration(user_calibration()));
     monitor.finish();
     if (done.report.failure.code == "no_checkpoint") std::cerr << monitor.notes();
   }
@@ -113,12 +113,12 @@ int schema_command() {
 int check_command(const std::string& case_file, const std::optional<Preset>& preset) {
   const auto text = read_case_file(case_file);
   if (!text) return exit_status::bad_input;
-  const ParsedCase parsed = parse_case(*text, preset);
+  const Calibration machine = read_calibration(user_calibration());
+  const ParsedCase parsed = parse_case(*text, preset, machine);
   if (!parsed.scene) {
     print_faults(case_file, parsed.faults);
     return exit_status::bad_input;
   }
-  const Calibration machine = read_calibration(user_calibration());
   std::cout << estimate_json(*text, make_plan(*parsed.scene, machine), machine) << '\n';
   return exit_status::ok;
 }

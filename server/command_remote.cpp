@@ -33,10 +33,14 @@ int with_server(const std::string& url, Talk talk) {
   }
 }
 
-/// The case with another `numerics.preset`. Requires a case without faults.
+/// The case with another `numerics.preset`, which replaces what else would choose the cells. Requires a case
+/// without faults.
 std::string with_preset(const std::string& text, Preset preset) {
   Json json = Json::parse(text);
-  json["numerics"]["preset"] = preset_name(preset);
+  Json& numerics = json["numerics"];
+  numerics["preset"] = preset_name(preset);
+  if (!numerics.contains("chosen") || numerics["chosen"].is_null())
+    for (const char* key : {"target_error", "budget_seconds"}) numerics.erase(key);
   return json.dump(2);
 }
 
@@ -56,7 +60,10 @@ int print_end(Client& client, const RemoteRun& run) {
     std::cerr << "failed (" << run.json["failure"].value("code", "")
               << "): " << run.json["failure"].value("message", "") << '\n';
   for (const StoredResult& result : client.results(run.id))
-    if (result.name == "run.json") std::cout << headline_text(client.result_text(run.id, result.name));
+    if (result.name == "tradeoff.csv")
+      std::cout << client.result_text(run.id, result.name);
+    else if (result.name == "run.json" && run.json.value("kind", "run") == "run")
+      std::cout << headline_text(client.result_text(run.id, result.name));
   std::cout << "Files: quicksand fetch " << run.id << " --out DIR\n";
   return run.status == "succeeded" ? exit_status::ok : exit_status::failed;
 }
@@ -75,7 +82,7 @@ int submit_command(const SubmitCommand& command) {
     text = with_preset(*text, *command.preset);
   }
   return with_server(command.url, [&](Client& client) {
-    RemoteRun run = client.submit(*text, command.label, command.priority);
+    RemoteRun run = client.submit(*text, {command.label, command.priority, command.tradeoff, command.budget});
     std::cout << run.id << std::endl;
     if (!command.wait) return exit_status::ok;
     {

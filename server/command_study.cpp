@@ -6,18 +6,18 @@
 
 #include "api/case_json.hpp"
 #include "engine/study/calibrate.hpp"
-#include "engine/study/ladder.hpp"
 #include "server/calibration_file.hpp"
 #include "server/commands.hpp"
 #include "server/files.hpp"
 #include "server/progress_bar.hpp"
+#include "server/tradeoff_run.hpp"
 
 namespace quicksand {
 
 int tradeoff_command(const TradeoffCommand& command) {
   const auto text = read_case_file(command.case_file);
   if (!text) return exit_status::bad_input;
-  const ParsedCase parsed = parse_case(*text, command.preset);
+  const ParsedCase parsed = parse_case(*text, command.preset, read_calibration(user_calibration()));
   if (!parsed.scene) {
     print_faults(command.case_file, parsed.faults);
     return exit_status::bad_input;
@@ -34,20 +34,19 @@ int tradeoff_command(const TradeoffCommand& command) {
     }
   }
   RunMonitor monitor;
-  const Tradeoff tradeoff =
-      measure_tradeoff(*parsed.scene, reference, command.threads, command.budget, monitor);
-  const std::string csv = tradeoff_csv(tradeoff);
-  std::cout << csv;
-  if (command.out.empty()) return exit_status::ok;
-  try {
-    const std::filesystem::path folder(command.out);
-    std::filesystem::create_directories(folder);
-    write_atomically(folder / "tradeoff.csv", csv);
-    write_atomically(folder / "tradeoff.svg", tradeoff_svg(tradeoff, parsed.scene->name));
-  } catch (const std::exception& error) {
-    std::cerr << command.out << ": " << error.what() << '\n';
+  if (command.out.empty()) {
+    std::cout << tradeoff_csv(
+        measure_tradeoff(*parsed.scene, reference, command.threads, command.budget, monitor));
+    return exit_status::ok;
+  }
+  const Execution done = execute_tradeoff(*text, command.preset, command.out, monitor,
+                                          {std::move(reference), command.threads, command.budget},
+                                          read_calibration(user_calibration()));
+  if (done.report.status == RunStatus::failed) {
+    std::cerr << command.out << ": " << done.report.failure.message << '\n';
     return exit_status::not_written;
   }
+  std::cout << read_text(std::filesystem::path(command.out) / "tradeoff.csv").value_or("");
   return exit_status::ok;
 }
 

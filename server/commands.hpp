@@ -61,6 +61,8 @@ struct SubmitCommand {
   std::string case_file, url, label;
   std::optional<Preset> preset;
   int priority = 0;
+  bool tradeoff = false;      ///< the ladder instead of the case
+  std::optional<int> budget;  ///< s of CPU time for it; absent: the service's default
   bool wait = false;
 };
 int submit_command(const SubmitCommand& command);

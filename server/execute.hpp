@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/plan/calibration.hpp"
 #include "engine/run/run.hpp"
 
 namespace quicksand {
@@ -13,15 +14,16 @@ struct Execution {
   std::vector<Fault> faults;  ///< not empty: nothing was run and nothing written
   RunReport report;
 };
-/// Whether to go on from the folder's newest checkpoint that is whole and of this case and version.
+/// Whether to go on from the folder's newest checkpoint that is whole and of this case and build.
 enum class Resume {
   never,
   if_possible,  ///< else from the beginning; the monitor's log says why
   required      ///< else the run fails, code "no_checkpoint", and nothing is touched
 };
-/// Checkpoints are kept when the run is suspended or cannot store its results, and removed otherwise.
+/// `machine` is what numerics.budget_seconds counts by. Checkpoints are kept when the run is suspended or
+/// cannot store its results, and removed otherwise.
 Execution execute(const std::string& case_text, const std::optional<Preset>& preset,
                   const std::string& folder, RunMonitor& monitor, const RunOptions& options,
-                  Resume resume = Resume::never);
+                  Resume resume = Resume::never, const Calibration& machine = {});
 
 }  // namespace quicksand

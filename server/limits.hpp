@@ -1,12 +1,12 @@
 #pragma once
 // What a case and a run may take; each refusal names the limit, the value and the setting.
 
-#include <chrono>
 #include <optional>
 #include <string>
 
 #include "engine/plan/plan.hpp"
 #include "engine/run/run.hpp"
+#include "engine/study/tradeoff.hpp"
 #include "server/settings.hpp"
 #include "server/state_folder.hpp"
 #include "server/store.hpp"
@@ -14,6 +14,7 @@
 namespace quicksand {
 
 RunCost cost_of(const Plan& plan);
+RunCost cost_of(const TradeoffCost& cost);
 
 /// Bytes that the runs may take together.
 double memory_limit(const Settings& settings);
@@ -31,7 +32,7 @@ std::string disk_shortage(const Settings& settings, const StateFolder& folder, d
 double folder_bytes(const std::filesystem::path& folder);
 
 /// Why a run has to end that has computed for so long; empty when it need not.
-std::optional<Failure> out_of_time(const Settings& settings, std::chrono::steady_clock::duration wall);
+std::optional<Failure> out_of_time(const Settings& settings, double seconds);
 
 /// Why runs have to end while the process takes so much memory; empty when they need not.
 std::optional<Failure> out_of_memory(const Settings& settings, double resident_bytes);

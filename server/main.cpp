@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <iostream>
 
+#include "engine/run/engine_build.hpp"
 #include "server/commands.hpp"
 #include "server/version.hpp"
 
@@ -61,7 +62,7 @@ void add_local_commands(CLI::App& app, CommandLine& line) {
 
   CLI::App* tradeoff = app.add_subcommand("tradeoff", "error and cost of a case under other settings");
   tradeoff->add_option("CASE", line.tradeoff.case_file, "case file (JSON)")->required();
-  tradeoff->add_option("--out", line.tradeoff.out, "folder for tradeoff.csv and tradeoff.svg");
+  tradeoff->add_option("--out", line.tradeoff.out, "folder for tradeoff.csv, .svg and .png, and run.json");
   tradeoff->add_option("--reference", line.tradeoff.reference,
                        "CSV of curves: time, then series by name; if absent, the run with the finest cells");
   tradeoff->add_option("--threads", line.tradeoff.threads, "0: all cores")->check(CLI::Range(0, 1024));
@@ -148,6 +149,10 @@ void add_remote_commands(CLI::App& app, CommandLine& line) {
   add_preset(submit, line.submit.preset);
   submit->add_option("--label", line.submit.label, "a word to find the run by");
   submit->add_option("--priority", line.submit.priority, "-10 to 10, higher ones first; above 0 for admins");
+  submit->add_flag("--tradeoff", line.submit.tradeoff, "measure the case's ladder instead of running it");
+  submit->add_option("--budget", line.submit.budget, "with --tradeoff: s of CPU time for all of it")
+      ->check(CLI::Range(1, 1'000'000))
+      ->needs("--tradeoff");
   submit->add_flag("--wait", line.submit.wait, "show progress until it ends");
   submit->callback([&line] {
     line.submit.url = line.url;
@@ -176,7 +181,8 @@ void add_remote_commands(CLI::App& app, CommandLine& line) {
 int main(int argc, char** argv) {
   CLI::App app{"quicksand: material point simulation of saturated ground and free water"};
   quicksand::CommandLine line;
-  app.set_version_flag("--version", std::string("quicksand ") + quicksand::engine_version);
+  app.set_version_flag("--version", std::string("quicksand ") + quicksand::engine_version +
+                                        ", engine build " + quicksand::engine_build());
   app.require_subcommand(1);
   quicksand::add_local_commands(app, line);
   quicksand::add_serve_command(app, line);

@@ -19,27 +19,36 @@ constexpr int default_page = 50;
 constexpr int max_priority = 10;
 constexpr int full_retry_s = 60;  ///< s, `Retry-After` of a full queue
 
+constexpr int default_budget_s = 600, max_budget_s = 1'000'000;  ///< s of CPU time of a tradeoff
+
 struct PlannedCase {
   Scene scene;
   Plan plan;
 };
 
+void refuse_too_large(const Settings& settings, const RunCost& cost) {
+  Problem problem;
+  problem.status = 422;
+  problem.detail = "the case cannot be run";
+  problem.errors = too_large(settings, cost);
+  if (!problem.errors.empty()) throw ProblemError{problem};
+}
+
 /// The body as a scene that this service may run, or 422 with every fault.
 PlannedCase plan_case(const Settings& settings, const Calibration& machine, const std::string& text) {
-  ParsedCase parsed = parse_case(text);
+  ParsedCase parsed = parse_case(text, {}, machine);
   Problem problem;
   problem.status = 422;
   problem.detail = "the case cannot be run";
   problem.errors = std::move(parsed.faults);
   if (!parsed.scene) throw ProblemError{problem};
   PlannedCase planned{*parsed.scene, make_plan(*parsed.scene, machine)};
-  problem.errors = too_large(settings, cost_of(planned.plan));
-  if (!problem.errors.empty()) throw ProblemError{problem};
+  refuse_too_large(settings, cost_of(planned.plan));
   return planned;
 }
 
 void refuse_on_a_full_disk(Service& service) {
-  const std::string shortage = disk_shortage(service.settings, service.folder, service.store.results_bytes());
+  const std::string shortage = service.runner.shortage();
   if (!shortage.empty()) fail(507, shortage);
 }
 
@@ -53,6 +62,18 @@ int checked_priority(const Call& call) {
   if (priority > 0 && call.caller.role != Role::admin)
     fail(403, "priority above 0 needs a key with the role admin");
   return priority;
+}
+
+/// Sets the kind and, of a tradeoff, its budget.
+RunKind read_kind(const Call& call, NewRun& wanted) {
+  const std::string kind = call.request.has_param("kind") ? call.parameter("kind") : "run";
+  if (kind != "run" && kind != "tradeoff") fail(400, "kind: run or tradeoff");
+  if (kind == "run" && call.request.has_param("budget"))
+    fail(400, "budget has no effect without kind=tradeoff");
+  wanted.kind = kind == "tradeoff" ? RunKind::tradeoff : RunKind::run;
+  if (wanted.kind == RunKind::tradeoff)
+    wanted.budget = checked_number<int>(call, "budget", 1, max_budget_s, default_budget_s);
+  return wanted.kind;
 }
 
 std::string checked_label(const Call& call) {
@@ -116,6 +137,10 @@ void post_run(Service& service, const Call& call, httplib::Response& response) {
   const PlannedCase planned = plan_case(service.settings, service.machine, call.request.body);
   wanted.name = planned.scene.name;
   wanted.cost = cost_of(planned.plan);
+  if (read_kind(call, wanted) == RunKind::tradeoff) {
+    wanted.cost = cost_of(tradeoff_cost(planned.scene, wanted.budget, service.machine));
+    refuse_too_large(service.settings, wanted.cost);
+  }
   wanted.owner = call.caller.name;
   wanted.case_text = call.request.body;
   wanted.engine_version = engine_version;

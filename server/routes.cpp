@@ -17,7 +17,7 @@ namespace quicksand {
 
 const std::vector<Route>& route_table() {
   static const std::vector<Route> table{
-      {"POST", "/v1/runs", post_run, Access::change, {"label", "priority"}, true},
+      {"POST", "/v1/runs", post_run, Access::change, {"label", "priority", "kind", "budget"}, true},
       {"GET",
        "/v1/runs",
        get_runs,

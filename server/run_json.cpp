@@ -47,6 +47,8 @@ Json run_json(const StoredRun& run, const Settings& settings) {
             {"results_expire", time_or_null(expires(run, settings))},
             {"results_removed", time_or_null(run.expired)},
             {"priority", run.priority},
+            {"kind", kind_name(run.kind)},
+            {"budget_s", run.kind == RunKind::tradeoff ? Json(run.budget) : Json(nullptr)},
             {"estimated_s", run.cost.seconds},
             {"progress", run.progress.empty() ? Json(nullptr) : Json::parse(run.progress)},
             {"failure", nullptr},

@@ -43,7 +43,8 @@ void insert_run(SQLite::Database& database, const std::string& id, const NewRun&
   SQLite::Statement insert(
       database,
       "INSERT INTO runs (id, state, name, label, case_text, case_sha256, engine_version, created, owner, "
-      "priority, points, memory_bytes, estimated_s) VALUES (?, 'queued', ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+      "priority, points, memory_bytes, estimated_s, kind, budget_s) "
+      "VALUES (?, 'queued', ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
   insert.bind(1, id);
   insert.bind(2, run.name);
   insert.bind(3, run.label);
@@ -56,6 +57,8 @@ void insert_run(SQLite::Database& database, const std::string& id, const NewRun&
   insert.bind(10, run.cost.points);
   insert.bind(11, run.cost.memory_bytes);
   insert.bind(12, run.cost.seconds);
+  insert.bind(13, kind_name(run.kind));
+  insert.bind(14, run.budget);
   insert.exec();
 }
 
@@ -74,7 +77,8 @@ Store::Store(const std::filesystem::path& file, Clock clock)
 CreateOutcome Store::create(const NewRun& run, const QueueLimits& limits) {
   const std::string case_sha256 = sha256_text(run.case_text);
   const std::string request_sha256 =
-      sha256_text(case_sha256 + run.label + (run.priority != 0 ? std::to_string(run.priority) : ""));
+      sha256_text(case_sha256 + run.label + (run.priority != 0 ? std::to_string(run.priority) : "") +
+                  (run.kind == RunKind::run ? "" : kind_name(run.kind) + std::to_string(run.budget)));
   const std::lock_guard lock(mutex_);
   const int64_t now = clock_();
   SQLite::Transaction transaction(state_, SQLite::TransactionBehavior::IMMEDIATE);
@@ -165,9 +169,11 @@ std::vector<StoredResult> Store::results(const std::string& id) {
 }
 
 void Store::check_writable() {
-  const std::lock_guard lock(mutex_);
-  SQLite::Transaction transaction(state_, SQLite::TransactionBehavior::IMMEDIATE);
-  state_.exec("UPDATE runs SET state = state WHERE sequence = 0");
+  const std::lock_guard lock(progress_mutex_);
+  SQLite::Transaction transaction(progress_, SQLite::TransactionBehavior::IMMEDIATE);
+  const int version = progress_.execAndGet("PRAGMA user_version").getInt();
+  progress_.exec("PRAGMA user_version = " + std::to_string(version));  // writes a page, the same as before
+  transaction.commit();
 }
 
 }  // namespace quicksand

@@ -27,6 +27,10 @@ inline constexpr std::array all_run_states{RunState::queued,    RunState::runnin
 /// queued, running or canceling: the run's files may still change.
 bool is_active(RunState state);
 
+/// A case computed, or the ladder of its settings measured.
+enum class RunKind { run, tradeoff };
+const char* kind_name(RunKind kind);
+
 /// What the plan says a run will take.
 struct RunCost {
   std::int64_t points = 0;  ///< 0: not planned yet
@@ -41,11 +45,13 @@ struct StoredRun {
   std::string name, label;
   std::string owner;  ///< name of the API key that submitted it; empty without keys
   int priority = 0;   ///< higher ones first
+  RunKind kind = RunKind::run;
+  double budget = 0;  ///< s of CPU time, of a tradeoff
   RunCost cost;
   std::string case_sha256, engine_version;
   Milliseconds created = 0;
   std::optional<Milliseconds> started, finished;
-  std::optional<Failure> failure;
+  std::optional<Failure> failure;       ///< of a failed run; of a queued one, why it stopped and waits
   std::string progress;                 ///< JSON text; empty until the first step
   int retries = 0;                      ///< interruptions in a row, without a checkpoint between them
   long long revision = 0;               ///< rises with every change of this record
@@ -64,6 +70,8 @@ struct NewRun {
   std::string owner;
   int priority = 0;
   RunCost cost;
+  RunKind kind = RunKind::run;
+  double budget = 0;  ///< s of CPU time, of a tradeoff
 };
 
 struct QueueLimits {
@@ -124,8 +132,10 @@ class Store {
   /// The run has ended; `results` are complete and will not change.
   void finish(const std::string& id, RunState end, const std::optional<Failure>& failure,
               const std::vector<StoredResult>& results);
-  /// running → queued, for a server that stops in good order.
-  void requeue(const std::string& id);
+  /// running → queued: it goes on later. `failure`: what it waits for; forgotten when it is claimed.
+  void requeue(const std::string& id, const std::optional<Failure>& failure = {});
+  /// Of a run that has ended.
+  void add_results(const std::string& id, const std::vector<StoredResult>& results);
   /// To be called once at start: what a killed server left running is queued again, but fails with code
   /// "interrupted" when that happens `most_fruitless` times in a row without `advanced(run)`: it may be what
   /// brings the server down. What was being canceled is canceled.

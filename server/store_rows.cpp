@@ -17,6 +17,8 @@ std::optional<Milliseconds> optional_time(const SQLite::Column& column) {
 
 const char* state_name(RunState state) { return state_names[static_cast<std::size_t>(state)]; }
 
+const char* kind_name(RunKind kind) { return kind == RunKind::tradeoff ? "tradeoff" : "run"; }
+
 std::optional<RunState> state_from_name(const std::string& name) {
   for (std::size_t i = 0; i < state_names.size(); ++i)
     if (name == state_names[i]) return static_cast<RunState>(i);
@@ -52,6 +54,8 @@ StoredRun read_run(SQLite::Statement& row) {
   run.priority = row.getColumn(20).getInt();
   run.cost = {row.getColumn(21).getInt64(), row.getColumn(22).getDouble(), row.getColumn(23).getDouble()};
   run.expired = optional_time(row.getColumn(24));
+  run.kind = row.getColumn(25).getString() == kind_name(RunKind::tradeoff) ? RunKind::tradeoff : RunKind::run;
+  run.budget = row.getColumn(26).getDouble();
   return run;
 }
 

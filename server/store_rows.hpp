@@ -16,7 +16,7 @@ namespace quicksand {
 constexpr const char* run_columns =
     "sequence, id, state, name, label, case_sha256, engine_version, created, started, finished, progress, "
     "failure_code, failure_message, failure_time, failure_x, failure_y, failure_z, retries, revision, owner, "
-    "priority, points, memory_bytes, estimated_s, expired";
+    "priority, points, memory_bytes, estimated_s, expired, kind, budget_s";
 
 StoredRun read_run(SQLite::Statement& row);
 std::optional<StoredRun> find_run(SQLite::Database& database, const std::string& id);

@@ -79,7 +79,12 @@ DROP TABLE idempotency_keys;
 ALTER TABLE owned_keys RENAME TO idempotency_keys;
 )sql";
 
-constexpr std::array steps{version_1, version_2};
+constexpr const char* version_3 = R"sql(
+ALTER TABLE runs ADD COLUMN kind     TEXT NOT NULL DEFAULT 'run' CHECK (kind IN ('run', 'tradeoff'));
+ALTER TABLE runs ADD COLUMN budget_s REAL NOT NULL DEFAULT 0;         -- of CPU time, of a tradeoff
+)sql";
+
+constexpr std::array steps{version_1, version_2, version_3};
 constexpr int schema_version = static_cast<int>(steps.size());
 
 int version_of(SQLite::Database& database) { return database.execAndGet("PRAGMA user_version").getInt(); }

@@ -76,8 +76,7 @@ struct Grid {
   Cell<D> cell_of(const Vec<D>& x) const {
     Cell<D> c;
     for (int d = 0; d < D; ++d)
-      c[d] = static_cast<int>(
-          std::max(0.0, std::min(cells[d] - 1.0, std::floor((x[d] - origin[d]) * inverse_h))));
+      c[d] = static_cast<int>(std::max(0.0, std::min(cells[d] - 1.0, (x[d] - origin[d]) * inverse_h)));
     return c;
   }
   Vec<D> center(const Cell<D>& c) const {

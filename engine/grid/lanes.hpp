@@ -3,6 +3,12 @@
 // vector types, element by element; where there are no such instructions it makes scalar code of it. What is
 // written for any T below works on a double and on lanes alike.
 
+#include <array>
+#include <cmath>
+#ifdef __AVX512F__
+#include <immintrin.h>
+#endif
+
 /// Lanes go from function to function only inside others: how they are passed depends on the processor that a
 /// file is compiled for.
 #define QUICKSAND_INLINE inline __attribute__((always_inline))
@@ -20,6 +26,10 @@ template <int N>
 using Lanes = typename LanesOf<N>::type;
 template <int N>
 using IntLanes = typename LanesOf<N>::integers;
+
+/// Points that are worked out together.
+inline constexpr int kBatch = 8;
+using BatchLanes = Lanes<kBatch>;
 
 /// The N doubles that begin with `first`, which lie one after the other.
 template <int N>
@@ -50,6 +60,44 @@ template <class T>
 QUICKSAND_INLINE T clamped(const T& v, const T& low, const T& high) {
   const T above = where(v > low, v, low);  // not a number becomes `low`
   return where(above < high, above, high);
+}
+
+/// out[k][i] = in[i][k].
+QUICKSAND_INLINE std::array<Lanes<8>, 8> transposed(const std::array<Lanes<8>, 8>& in) {
+  std::array<Lanes<8>, 8> pair, four, out;
+  for (int i = 0; i < 8; i += 2) {  // entries of two rows side by side: of even columns, of odd ones
+    pair[i] = __builtin_shufflevector(in[i], in[i + 1], 0, 8, 2, 10, 4, 12, 6, 14);
+    pair[i + 1] = __builtin_shufflevector(in[i], in[i + 1], 1, 9, 3, 11, 5, 13, 7, 15);
+  }
+  for (int i = 0; i < 8; i += 4)
+    for (int odd = 0; odd < 2; ++odd) {  // of four rows: columns odd and odd + 4, odd + 2 and odd + 6
+      four[i + odd] = __builtin_shufflevector(pair[i + odd], pair[i + 2 + odd], 0, 1, 8, 9, 4, 5, 12, 13);
+      four[i + 2 + odd] =
+          __builtin_shufflevector(pair[i + odd], pair[i + 2 + odd], 2, 3, 10, 11, 6, 7, 14, 15);
+    }
+  for (int k = 0; k < 4; ++k) {
+    out[k] = __builtin_shufflevector(four[k], four[k + 4], 0, 1, 2, 3, 8, 9, 10, 11);
+    out[k + 4] = __builtin_shufflevector(four[k], four[k + 4], 4, 5, 6, 7, 12, 13, 14, 15);
+  }
+  return out;
+}
+
+QUICKSAND_INLINE double square_root(double v) { return std::sqrt(v); }
+QUICKSAND_INLINE BatchLanes square_root(const BatchLanes& v) {
+#ifdef __AVX512F__
+  return reinterpret_cast<BatchLanes>(_mm512_maskz_sqrt_pd(0xff, reinterpret_cast<__m512d>(v)));
+#else
+  BatchLanes root;
+  for (int k = 0; k < kBatch; ++k) root[k] = std::sqrt(v[k]);
+  return root;
+#endif
+}
+/// Whether the mask is true in one of the first `count` lanes.
+template <class Mask>
+QUICKSAND_INLINE bool any_of(const Mask& mask, int count) {
+  bool any = false;
+  for (int k = 0; k < count; ++k) any = any || mask[k] != 0;
+  return any;
 }
 
 }  // namespace quicksand

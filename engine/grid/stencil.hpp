@@ -16,16 +16,6 @@ struct FaceWeight {
   Vec<D> gradient, arm;
 };
 
-/// A row of faces along x, or of cells, without the factors along x: those of a node multiply `w` and all of
-/// `gradient` by its own weight, but `gradient[0]` by its derivative.
-template <int D, int n>
-struct KernelRow {
-  int first = 0;  ///< face of node 0; the others follow
-  double w = 1;
-  Vec<D> gradient{}, arm{};
-  std::array<double, n> x, dx;  ///< weights of the nodes along x, and their derivatives, per cell
-};
-
 /// What a face's velocity adds to the gradient that a point carries in the affine transfer, 1/m:
 /// w (x_f − x_p) over the kernel's spread, which for hats is the gradient of w.
 template <class Shape, int D>
@@ -54,7 +44,7 @@ inline void call(F& f, int face, const FaceWeight<D>& weight, double sign) {
 
 /// Nodes along axis a of the faces of component d.
 template <int d, int a, class Kernel>
-inline auto nodes(const Kernel& k) {
+inline const auto& nodes(const Kernel& k) {
   if constexpr (a == d)
     return k.face(a);
   else
@@ -68,47 +58,13 @@ constexpr int node_count(int a) {
 /// Multiplies a weight and its gradient by the factors of node i along axis a.
 template <int D, class Weight, class Nodes>
 inline void multiply(Weight& weight, const Nodes& n, int a, int i, double h) {
-  const double w = n.w(i);
+  const double w = n.w[i];
   weight.w *= w;
-  for (int b = 0; b < D; ++b) weight.gradient[b] *= b == a ? n.dw(i) : w;
-  weight.arm[a] = (n.first() + i - n.at()) * h;
+  for (int b = 0; b < D; ++b) weight.gradient[b] *= b == a ? n.dw[i] : w;
+  weight.arm[a] = (static_cast<int>(n.first) + i - n.at) * h;
 }
 
 }  // namespace stencil
-
-/// f(KernelRow) for the rows of faces of component d (a number as a type)
-/// around a point that no wall is near.
-template <int D, class Kernel, class Component, class F>
-inline void for_rows(const Grid<D>& grid, const Kernel& k, Component, F&& f) {
-  constexpr int d = Component::value;
-  using Shape = typename Kernel::Shape;
-  constexpr int nx = stencil::node_count<d, Shape>(0);
-  const auto x = stencil::nodes<d, 0>(k);
-  const auto y = stencil::nodes<d, 1>(k);
-  KernelRow<D, nx> start;
-  start.first = k.home() + x.first();
-  start.gradient.fill(grid.inverse_h);
-  for (int i = 0; i < nx; ++i) start.x[i] = x.w(i), start.dx[i] = x.dw(i);
-  const auto plane = [&](const KernelRow<D, nx>& of) {
-    for (int j = 0; j < stencil::node_count<d, Shape>(1); ++j) {
-      KernelRow<D, nx> row = of;
-      row.first += (y.first() + j) * grid.stride[1];
-      stencil::multiply<D>(row, y, 1, j, grid.h);
-      f(row);
-    }
-  };
-  if constexpr (D == 2) {
-    plane(start);
-  } else {
-    const auto z = stencil::nodes<d, 2>(k);
-    for (int j = 0; j < stencil::node_count<d, Shape>(2); ++j) {
-      KernelRow<D, nx> of = start;
-      of.first += (z.first() + j) * grid.stride[2];
-      stencil::multiply<D>(of, z, 2, j, grid.h);
-      plane(of);
-    }
-  }
-}
 
 /// f(d) for all components, each as a type with the number as `value`.
 template <int D, class F>
@@ -128,54 +84,33 @@ QUICKSAND_INLINE Vec<D> from_components(F&& f) {
 
 namespace stencil {
 
-/// Away from walls.
 template <int d, int D, class Kernel, class F>
-inline void open_faces(const Grid<D>& grid, const Kernel& k, F& f) {
-  const auto x = nodes<d, 0>(k);
-  for_rows(grid, k, std::integral_constant<int, d>{}, [&](const auto& row) {
-    for (std::size_t i = 0; i < row.x.size(); ++i) {
-      FaceWeight<D> weight{row.w, row.gradient, row.arm};
-      multiply<D>(weight, x, 0, static_cast<int>(i), grid.h);
-      call<D>(f, row.first + static_cast<int>(i), weight, 1.0);
-    }
-  });
-}
-
-/// Beside walls.
-template <int d, int D, class Kernel, class F>
-inline void folded_faces(const Grid<D>& grid, const Walls<D>& walls, const Kernel& k,
-                         const typename Walls<D>::CellFolds& folds, F& f) {
+inline void faces(const Grid<D>& grid, const Walls<D>& walls, const Kernel& k, F& f) {
   using Shape = typename Kernel::Shape;
+  const auto* folds = walls.folds(k.home());
   // Along axis a, the factors of those before it being in `weight`.
-  const auto along = [&](const auto& self, auto axis, const FaceWeight<D>& weight, int slot,
+  const auto along = [&](const auto& self, auto axis, const FaceWeight<D>& weight, int face, int slot,
                          int scale) -> void {
     constexpr int a = decltype(axis)::value;
-    const auto n = nodes<d, a>(k);
+    const auto& n = nodes<d, a>(k);
     for (int i = 0; i < node_count<d, Shape>(a); ++i) {
       FaceWeight<D> product = weight;
       multiply<D>(product, n, a, i, grid.h);
-      const int position = n.first() + i + 1, at = slot + position * (a == d ? 1 : scale);
+      const int position = static_cast<int>(n.first) + i;
+      const int to = face + position * grid.stride[a], at = slot + (position + 1) * (a == d ? 1 : scale);
       if constexpr (a + 1 < D) {
-        self(self, std::integral_constant<int, a + 1>{}, product, at, a == d ? scale : 3 * scale);
+        self(self, std::integral_constant<int, a + 1>{}, product, to, at, a == d ? scale : 3 * scale);
+      } else if (folds) {
+        const Fold& fold = folds->face[d][at];
+        call<D>(f, fold.target, product, walls.sign(d, fold));
       } else {
-        const Fold& fold = folds.face[d][at];
-        double sign = fold.tangential;
-        if (fold.normal_wall >= 0 && !walls.separated(d, fold.normal_wall)) sign = -sign;
-        call<D>(f, fold.target, product, sign);
+        call<D>(f, to, product, 1.0);
       }
     }
   };
   FaceWeight<D> one;
   one.gradient.fill(grid.inverse_h);
-  along(along, std::integral_constant<int, 0>{}, one, 0, 4);
-}
-
-template <int d, int D, class Kernel, class F>
-inline void faces(const Grid<D>& grid, const Walls<D>& walls, const Kernel& k, F& f) {
-  if (const auto* folds = walls.folds(k.home()))
-    folded_faces<d>(grid, walls, k, *folds, f);
-  else
-    open_faces<d>(grid, k, f);
+  along(along, std::integral_constant<int, 0>{}, one, k.home(), 0, 4);
 }
 
 }  // namespace stencil
@@ -198,18 +133,18 @@ template <int D, class Kernel, class F>
 inline void for_centers(const Grid<D>& grid, const Walls<D>& walls, const Kernel& k, F&& f) {
   constexpr int n = Kernel::Shape::centers;
   const auto* folds = walls.folds(k.home());
-  const auto x = k.center(0);
+  const auto& x = k.center(0);
   for (int row = 0; row < power(n, D - 1); ++row) {
     double outer = 1;
-    int cell = k.home() + x.first(), slot = x.first() + 1;
+    int cell = k.home() + static_cast<int>(x.first), slot = static_cast<int>(x.first) + 1;
     for (int a = 1, rest = row, scale = 3; a < D; ++a, rest /= n, scale *= 3) {
-      const auto s = k.center(a);
-      const int position = s.first() + rest % n;
-      outer *= s.w(rest % n);
+      const auto& s = k.center(a);
+      const int position = static_cast<int>(s.first) + rest % n;
+      outer *= s.w[rest % n];
       cell += position * grid.stride[a];
       slot += (position + 1) * scale;
     }
-    for (int i = 0; i < n; ++i) f(folds ? folds->center[slot + i] : cell + i, outer * x.w(i));
+    for (int i = 0; i < n; ++i) f(folds ? folds->center[slot + i] : cell + i, outer * x.w[i]);
   }
 }
 

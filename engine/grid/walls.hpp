@@ -101,6 +101,11 @@ class Walls {
 
   /// Recomputes the folds; call after the last close/open.
   void rebuild(const Grid<D>& grid);
+  /// What goes with momenta, forces and velocities of component d when they are mirrored.
+  double sign(int d, const Fold& fold) const {
+    const bool turned = fold.normal_wall >= 0 && !separated(d, fold.normal_wall);
+    return turned ? -fold.tangential : fold.tangential;
+  }
   /// Folds of a cell, or null where no wall is in reach.
   const CellFolds* folds(int cell) const {
     return fold_of_[cell] == 0 ? nullptr : &folds_[fold_of_[cell] - 1];

@@ -15,10 +15,11 @@ struct Elastic {
   double poisson() const { return (3 * bulk - 2 * shear) / (2 * (3 * bulk + shear)); }
 
   /// `stress` after a strain increment, without yielding.
-  template <std::size_t N>
-  std::array<double, N> stretched(std::array<double, N> stress, const std::array<double, N>& strain) const {
-    const double volume = lame() * trace(strain);
-    for (std::size_t i = 0; i < N; ++i) stress[i] += 2 * shear * strain[i] + (i < 3 ? volume : 0);
+  template <class T, std::size_t N>
+  QUICKSAND_INLINE std::array<T, N> stretched(std::array<T, N> stress, const std::array<T, N>& strain) const {
+    const T volume = lame() * trace(strain);
+    for (std::size_t i = 0; i < 3; ++i) stress[i] += 2 * shear * strain[i] + volume;
+    for (std::size_t i = 3; i < N; ++i) stress[i] += 2 * shear * strain[i];
     return stress;
   }
   /// J/m³ stored by a stress.

@@ -13,8 +13,10 @@
 //   porosity) const;                J/m³, elastic
 //
 // `update` gets the stress already turned with the material, and the porosity at the start of the step.
-// `begin` and `update` return how many values it held at a bound other than by its equations (the ledger's
-// clamped_values).
+// A law may have `update_batch(SoilState<D, BatchLanes>&, const Strain<D, BatchLanes>&, const BatchLanes&
+// porosity, int count)` besides, which does the same for the first `count` lanes; the others may become
+// anything. `begin` and `update` return how many values it held at a bound other than by its equations (the
+// ledger's clamped_values).
 
 #include <string>
 #include <vector>
@@ -24,13 +26,27 @@
 
 namespace quicksand {
 
-/// What one soil point carries between steps.
-template <int D>
+/// What one soil point carries between steps, or several in lanes.
+template <int D, class T = double>
 struct SoilState {
-  Stress<D> stress{};           ///< Pa, effective, tension positive
-  double plastic_strain = 0;    ///< –, accumulated plastic shear strain, Σ √(2/3 e:e) of the deviator e
-  double preconsolidation = 0;  ///< Pa, isotropic
+  Stress<D, T> stress{};  ///< Pa, effective, tension positive
+  T plastic_strain{};     ///< –, accumulated plastic shear strain, Σ √(2/3 e:e) of the deviator e
+  T preconsolidation{};   ///< Pa, isotropic
 };
+
+/// One of several.
+template <int D>
+SoilState<D> lane_of(const SoilState<D, BatchLanes>& states, int k) {
+  SoilState<D> one{{}, states.plastic_strain[k], states.preconsolidation[k]};
+  for (std::size_t i = 0; i < one.stress.size(); ++i) one.stress[i] = states.stress[i][k];
+  return one;
+}
+template <int D>
+void set_lane(SoilState<D, BatchLanes>& states, int k, const SoilState<D>& one) {
+  for (std::size_t i = 0; i < one.stress.size(); ++i) states.stress[i][k] = one.stress[i];
+  states.plastic_strain[k] = one.plastic_strain;
+  states.preconsolidation[k] = one.preconsolidation;
+}
 
 template <int D>
 SoilState<D> soil_state(const SoilPoints<D>& soil, std::size_t p) {

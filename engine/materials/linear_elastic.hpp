@@ -31,6 +31,12 @@ struct LinearElasticLaw {
     return 0;
   }
   template <int D>
+  QUICKSAND_INLINE int update_batch(SoilState<D, BatchLanes>& state, const Strain<D, BatchLanes>& strain,
+                                    const BatchLanes& /*porosity*/, int /*count*/) const {
+    state.stress = elastic.stretched(state.stress, strain);
+    return 0;
+  }
+  template <int D>
   double energy(const SoilState<D>& state, double /*porosity*/) const {
     return elastic.energy(state.stress);
   }

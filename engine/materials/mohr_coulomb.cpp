@@ -152,7 +152,9 @@ void MohrCoulombLaw::check(const SoilModel& m, ModelFaults& faults) {
 }
 
 template <int D>
-void MohrCoulombLaw::yield(const MohrCoulomb& now, SoilState<D>& state) const {
+void MohrCoulombLaw::yield(double cohesion, SoilState<D>& state) const {
+  MohrCoulomb now = peak;
+  now.cohesion = cohesion;
   const Principal<D> trial = principal(state.stress);
   const MohrCoulombReturn r = return_map(now, elastic, trial.value);
   if (r.region == YieldRegion::elastic) return;
@@ -160,7 +162,7 @@ void MohrCoulombLaw::yield(const MohrCoulomb& now, SoilState<D>& state) const {
   state.plastic_strain += std::sqrt(2.0 / 3.0 * contracted(deviator(r.plastic_strain)));
 }
 
-template void MohrCoulombLaw::yield<2>(const MohrCoulomb&, SoilState<2>&) const;
-template void MohrCoulombLaw::yield<3>(const MohrCoulomb&, SoilState<3>&) const;
+template void MohrCoulombLaw::yield<2>(double, SoilState<2>&) const;
+template void MohrCoulombLaw::yield<3>(double, SoilState<3>&) const;
 
 }  // namespace quicksand

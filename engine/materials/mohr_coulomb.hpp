@@ -64,11 +64,12 @@ struct MohrCoulombLaw {
   static MohrCoulombLaw from(const SoilModel& model);
   static void check(const SoilModel& model, ModelFaults& faults);
 
-  MohrCoulomb strength(double plastic_strain) const {
-    MohrCoulomb now = peak;
-    if (softening_strain > 0)
-      now.cohesion += (residual_cohesion - peak.cohesion) * std::min(1.0, plastic_strain / softening_strain);
-    return now;
+  /// Pa, after so much plastic shear strain.
+  template <class T>
+  QUICKSAND_INLINE T cohesion(const T& plastic_strain) const {
+    if (softening_strain <= 0) return all_lanes<T>(peak.cohesion);
+    const T part = clamped<T>(plastic_strain / softening_strain, T{}, all_lanes<T>(1));
+    return peak.cohesion + (residual_cohesion - peak.cohesion) * part;
   }
 
   template <int D>
@@ -84,9 +85,25 @@ struct MohrCoulombLaw {
   template <int D>
   int update(SoilState<D>& state, const Strain<D>& strain, double /*porosity*/) const {
     state.stress = elastic.stretched(state.stress, strain);
-    const MohrCoulomb now = strength(state.plastic_strain);
-    if (surely_inside(now, principal_bounds<D>(state.stress))) return 0;
-    if (D != 2 || !yield_at_face(now, state)) yield(now, state);
+    const double c = cohesion(state.plastic_strain);
+    if (!may_yield<D>(c, state)) return 0;
+    if (D != 2 || !return_to_face<D>(c, true, state)) yield(c, state);
+    return 0;
+  }
+  template <int D>
+  QUICKSAND_INLINE int update_batch(SoilState<D, BatchLanes>& state, const Strain<D, BatchLanes>& strain,
+                                    const BatchLanes& /*porosity*/, int count) const {
+    state.stress = elastic.stretched(state.stress, strain);
+    const BatchLanes c = cohesion(state.plastic_strain);
+    auto left = may_yield<D>(c, state);
+    if (!any_of(left, count)) return 0;
+    if constexpr (D == 2) left &= ~return_to_face<D>(c, left, state);
+    for (int k = 0; k < count; ++k)
+      if (left[k]) {
+        SoilState<D> one = lane_of(state, k);
+        yield(c[k], one);
+        set_lane(state, k, one);
+      }
     return 0;
   }
   template <int D>
@@ -95,30 +112,42 @@ struct MohrCoulombLaw {
   }
 
  private:
-  /// Whether no stress within the bounds yields.
-  static bool surely_inside(const MohrCoulomb& law, const PrincipalBounds& s) {
-    return s.largest * (1 + law.sin_phi) - s.smallest * (1 - law.sin_phi) <= 2 * law.cohesion * law.cos_phi &&
-           s.largest <= law.tension;
+  /// False where the bounds of the principal stresses say that none yields.
+  template <int D, class T>
+  QUICKSAND_INLINE auto may_yield(const T& c, const SoilState<D, T>& state) const {
+    const PrincipalBounds<T> s = principal_bounds<D>(state.stress);
+    return (s.largest * (1 + peak.sin_phi) - s.smallest * (1 - peak.sin_phi) > 2 * peak.cos_phi * c) |
+           (s.largest > peak.tension);
   }
-  /// Does what `yield` does where the return ends on the face σ1–σ3; false where it does not.
-  template <int D>
-  bool yield_at_face(const MohrCoulomb& now, SoilState<D>& state) const {
-    const Principal<D> trial = principal(state.stress);
-    const std::array<double, 3>& s = trial.value;
-    const double excess =
-        s[0] * (1 + now.sin_phi) - s[2] * (1 - now.sin_phi) - 2 * now.cohesion * now.cos_phi;
-    const double gamma = excess * face.compliance;
-    const std::array<double, 3> back{s[0] - gamma * face.drop[0], s[1] - gamma * face.drop[1],
-                                     s[2] - gamma * face.drop[2]};
-    const bool on_face = gamma > 0 && back[0] >= back[1] && back[1] >= back[2] && back[0] <= now.tension;
-    if (!on_face || (now.sin_phi > 0 && back[2] * now.sin_phi > now.cohesion * now.cos_phi)) return false;
-    state.stress = with_values(trial, back);
-    state.plastic_strain += gamma * face.shear;
-    return true;
+  /// Does what `yield` does where `trial` is true and the return ends on the face σ1–σ3; says where it did.
+  template <int D, class T, class Mask>
+  QUICKSAND_INLINE auto return_to_face(const T& c, const Mask& trial, SoilState<D, T>& state) const {
+    Stress<D, T>& s = state.stress;
+    const T mean = 0.5 * (s[0] + s[1]), half = 0.5 * (s[0] - s[1]), z = s[2];
+    const T radius = square_root(half * half + s[3] * s[3]), larger = mean + radius, smaller = mean - radius;
+    const auto z_first = z >= larger, z_last = z < smaller;
+    const T s1 = where(z_first, z, larger), s3 = where(z_last, z, smaller);
+    const T s2 = where(z_first, larger, where(z_last, smaller, z));
+    const T gamma =
+        face.compliance * (s1 * (1 + peak.sin_phi) - s3 * (1 - peak.sin_phi) - 2 * peak.cos_phi * c);
+    const T b1 = s1 - gamma * face.drop[0], b2 = s2 - gamma * face.drop[1], b3 = s3 - gamma * face.drop[2];
+    auto on_face = trial & (gamma > 0) & (b1 >= b2) & (b2 >= b3) & (b1 <= peak.tension);
+    if (peak.sin_phi > 0) on_face = on_face & (b3 * peak.sin_phi <= peak.cos_phi * c);
+    const T new_larger = where(z_first, b2, b1), new_smaller = where(z_last, b2, b3);
+    const T new_mean = 0.5 * (new_larger + new_smaller), new_radius = 0.5 * (new_larger - new_smaller);
+    const auto round = radius > 0;
+    const T inverse = 1.0 / where(round, radius, all_lanes<T>(1));
+    const T cos2 = where(round, half * inverse, all_lanes<T>(1)), sin2 = s[3] * inverse;
+    s[0] = where(on_face, new_mean + new_radius * cos2, s[0]);
+    s[1] = where(on_face, new_mean - new_radius * cos2, s[1]);
+    s[2] = where(on_face, where(z_first, b1, where(z_last, b3, b2)), z);
+    s[3] = where(on_face, new_radius * sin2, s[3]);
+    state.plastic_strain = where(on_face, state.plastic_strain + gamma * face.shear, state.plastic_strain);
+    return on_face;
   }
   /// Brings a trial stress back, if it yields.
   template <int D>
-  void yield(const MohrCoulomb& now, SoilState<D>& state) const;
+  void yield(double cohesion, SoilState<D>& state) const;
 };
 
 }  // namespace quicksand

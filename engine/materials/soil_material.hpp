@@ -66,16 +66,70 @@ struct SoilMaterial {
 ModelFaults check_model(const SoilModel& model);
 bool needs_initial_stress(const SoilModel& model);
 
+namespace soil_update {
+
+template <int D, class Law>
+int one_lane(const Law& law, int k, SoilState<D, BatchLanes>& states, const Strain<D, BatchLanes>& strains,
+             const BatchLanes& n) {
+  SoilState<D> state = lane_of(states, k);
+  Strain<D> strain;
+  for (std::size_t i = 0; i < strain.size(); ++i) strain[i] = strains[i][k];
+  const int held = law.template update<D>(state, strain, n[k]);
+  set_lane(states, k, state);
+  return held;
+}
+
+template <int D, class Law>
+QUICKSAND_INLINE int all_lanes_of(const Law& law, int count, SoilState<D, BatchLanes>& states,
+                                  const Strain<D, BatchLanes>& strains, const BatchLanes& n) {
+  if constexpr (requires { law.template update_batch<D>(states, strains, n, count); }) {
+    return law.template update_batch<D>(states, strains, n, count);
+  } else {
+    int held = 0;
+    for (int k = 0; k < count; ++k) held += one_lane<D>(law, k, states, strains, n);
+    return held;
+  }
+}
+
+/// Turns the stress and returns the strain, both with the middle of the motion.
+template <int D, class T>
+QUICKSAND_INLINE Strain<D, T> turn(SoilState<D, T>& state, const Gradient<D, T>& l, double dt,
+                                   const T& hoop) {
+  const Gradient<D, T> middle = midpoint_gradient<D, T>(l, dt);
+  state.stress = rotated<D, T>(state.stress, middle, dt);
+  return strain_increment<D, T>(middle, dt, hoop);
+}
+
+}  // namespace soil_update
+
 /// State after a step of dt seconds with velocity gradient L (Jaumann rate), from porosity `n` at its start.
 /// In the plane the out-of-plane strain is zero; about an axis it grows at the rate `hoop` = v_r/r, 1/s.
 /// Returns how many values were held at a bound other than by the law's equations.
 template <int D>
-QUICKSAND_INLINE int update_state(const SoilMaterial& soil, SoilState<D>& state, double n,
-                                  const Gradient<D>& l, double dt, double hoop = 0) {
-  const Gradient<D> middle = midpoint_gradient<D>(l, dt);
-  state.stress = rotated<D>(state.stress, middle, dt);
-  const Strain<D> strain = strain_increment<D>(middle, dt, hoop);
+int update_state(const SoilMaterial& soil, SoilState<D>& state, double n, const Gradient<D>& l, double dt,
+                 double hoop = 0) {
+  const Strain<D> strain = soil_update::turn<D, double>(state, l, dt, hoop);
   return with_law(soil.law, [&](const auto& law) { return law.template update<D>(state, strain, n); });
+}
+
+/// The same for the first `count` of several points, each of its own soil; the others may become anything.
+template <int D>
+QUICKSAND_INLINE int update_states(const std::array<const SoilMaterial*, kBatch>& soil, int count,
+                                   SoilState<D, BatchLanes>& states, const BatchLanes& n,
+                                   const Gradient<D, BatchLanes>& l, double dt, const BatchLanes& hoop) {
+  const Strain<D, BatchLanes> strains = soil_update::turn<D, BatchLanes>(states, l, dt, hoop);
+  bool same = true;
+  for (int k = 1; k < count; ++k) same = same && soil[k] == soil[0];
+  if (same)
+    return with_law(
+        soil[0]->law, [&](const auto& law) __attribute__((always_inline)) {
+          return soil_update::all_lanes_of<D>(law, count, states, strains, n);
+        });
+  int held = 0;
+  for (int k = 0; k < count; ++k)
+    held += with_law(soil[k]->law,
+                     [&](const auto& law) { return soil_update::one_lane<D>(law, k, states, strains, n); });
+  return held;
 }
 
 }  // namespace quicksand

@@ -10,59 +10,66 @@
 
 namespace quicksand {
 
-/// Velocity gradient, ∂v_i/∂x_j in 1/s.
-template <int D>
-using Gradient = std::array<Vec<D>, D>;
-template <int D>
-using Strain = Stress<D>;
+// T is double, or lanes of several points (engine/grid/lanes.hpp).
 
-template <std::size_t N>
-double trace(const std::array<double, N>& t) {
+/// Velocity gradient, ∂v_i/∂x_j in 1/s.
+template <int D, class T = double>
+using Gradient = std::array<std::array<T, D>, D>;
+template <int D, class T = double>
+using Strain = Stress<D, T>;
+
+template <class T, std::size_t N>
+QUICKSAND_INLINE T trace(const std::array<T, N>& t) {
   return t[0] + t[1] + t[2];
 }
 
-template <std::size_t N>
-std::array<double, N> deviator(std::array<double, N> t) {
-  const double mean = trace(t) / 3;
+template <class T, std::size_t N>
+QUICKSAND_INLINE std::array<T, N> deviator(std::array<T, N> t) {
+  const T mean = trace(t) / 3;
   for (int i = 0; i < 3; ++i) t[i] -= mean;
   return t;
 }
 
 /// t:t, each shear component counted twice.
-template <std::size_t N>
-double contracted(const std::array<double, N>& t) {
-  double sum = 0;
-  for (std::size_t i = 0; i < N; ++i) sum += (i < 3 ? 1 : 2) * t[i] * t[i];
+template <class T, std::size_t N>
+QUICKSAND_INLINE T contracted(const std::array<T, N>& t) {
+  T sum{};
+  for (std::size_t i = 0; i < N; ++i) sum += (i < 3 ? 1.0 : 2.0) * t[i] * t[i];
   return sum;
 }
 
 /// The velocity gradient without the stretch that a finite rotation leaves in it, L − ½ Δt W²: what T. J. R.
 /// Hughes and J. Winget, IJNME 15 (1980) 1862, get from the middle of the motion, but for second order in the
 /// strain.
-template <int D>
-Gradient<D> midpoint_gradient(const Gradient<D>& l, double dt) {
-  const auto spin = [&](int i, int j) { return 0.5 * (l[i][j] - l[j][i]); };
-  Gradient<D> middle = l;
+template <int D, class T>
+QUICKSAND_INLINE Gradient<D, T> midpoint_gradient(const Gradient<D, T>& l, double dt) {
+  Gradient<D, T> spin, middle = l;
+  for (int i = 0; i < D; ++i)
+    for (int j = 0; j < D; ++j) spin[i][j] = 0.5 * (l[i][j] - l[j][i]);
   for (int i = 0; i < D; ++i)
     for (int j = 0; j < D; ++j)
-      for (int k = 0; k < D; ++k) middle[i][j] -= 0.5 * dt * spin(i, k) * spin(k, j);
+      for (int k = 0; k < D; ++k) middle[i][j] -= 0.5 * dt * spin[i][k] * spin[k][j];
   return middle;
 }
 
 /// Volume after a step over that before, det(1 + Δt L).
-template <int D>
-double volume_ratio(const Gradient<D>& l, double dt) {
-  const auto f = [&](int i, int j) { return (i == j ? 1 : 0) + dt * l[i][j]; };
-  const auto minor = [&](int i, int j) { return f(0, i) * f(1, j) - f(0, j) * f(1, i); };
+template <int D, class T>
+QUICKSAND_INLINE T volume_ratio(const Gradient<D, T>& l, double dt) {
+  Gradient<D, T> f;
+  for (int i = 0; i < D; ++i)
+    for (int j = 0; j < D; ++j) f[i][j] = (i == j ? 1.0 : 0.0) + dt * l[i][j];
+  const T minor = f[0][0] * f[1][1] - f[0][1] * f[1][0];
   if constexpr (D == 2)
-    return minor(0, 1);
+    return minor;
   else
-    return f(2, 2) * minor(0, 1) - f(2, 1) * minor(0, 2) + f(2, 0) * minor(1, 2);
+    return f[2][2] * minor - f[2][1] * (f[0][0] * f[1][2] - f[0][2] * f[1][0]) +
+           f[2][0] * (f[0][1] * f[1][2] - f[0][2] * f[1][1]);
 }
 
 /// Strain of a step of dt seconds; in the plane the third strain grows at the rate `hoop`, 1/s.
-template <int D>
-Strain<D> strain_increment(const Gradient<D>& l, double dt, [[maybe_unused]] double hoop) {
+template <int D, class T>
+QUICKSAND_INLINE Strain<D, T> strain_increment(const Gradient<D, T>& l, double dt,
+                                               [[maybe_unused]] const T& hoop) {
   if constexpr (D == 2)
     return {l[0][0] * dt, l[1][1] * dt, hoop * dt, 0.5 * (l[0][1] + l[1][0]) * dt};
   else
@@ -74,35 +81,51 @@ Strain<D> strain_increment(const Gradient<D>& l, double dt, [[maybe_unused]] dou
             0.5 * (l[2][0] + l[0][2]) * dt};
 }
 
+/// a·S·b
+template <class T>
+QUICKSAND_INLINE T between(const Stress<3, T>& s, const std::array<T, 3>& a, const std::array<T, 3>& b) {
+  return a[0] * (s[0] * b[0] + s[3] * b[1] + s[5] * b[2]) + a[1] * (s[3] * b[0] + s[1] * b[1] + s[4] * b[2]) +
+         a[2] * (s[5] * b[0] + s[4] * b[1] + s[2] * b[2]);
+}
+
 /// Stress carried along with the material's spin over dt seconds (Jaumann rate), by the rotation
 /// (1 − ½W)⁻¹(1 + ½W), which keeps its invariants.
-Stress<3> rotated_in_space(const Stress<3>& stress, const Gradient<3>& l, double dt);
-template <int D>
-Stress<D> rotated(const Stress<D>& stress, const Gradient<D>& l, double dt) {
+template <int D, class T>
+QUICKSAND_INLINE Stress<D, T> rotated(const Stress<D, T>& stress, const Gradient<D, T>& l, double dt) {
   if constexpr (D == 2) {
-    const double w = 0.25 * (l[1][0] - l[0][1]) * dt;  // tangent of half the angle
-    const double c = (1 - w * w) / (1 + w * w), sn = 2 * w / (1 + w * w);
-    const double mean = 0.5 * (stress[0] + stress[1]), half = 0.5 * (stress[0] - stress[1]);
-    const double cc = c * c - sn * sn, ss = 2 * c * sn;
-    const double turned = cc * half - ss * stress[3];
+    const T w = 0.25 * (l[1][0] - l[0][1]) * dt;  // tangent of half the angle
+    const T f = 1.0 / (1.0 + w * w), c = (1.0 - w * w) * f, sn = 2.0 * w * f;
+    const T mean = 0.5 * (stress[0] + stress[1]), half = 0.5 * (stress[0] - stress[1]);
+    const T cc = c * c - sn * sn, ss = 2.0 * c * sn;
+    const T turned = cc * half - ss * stress[3];
     return {mean + turned, mean - turned, stress[2], ss * half + cc * stress[3]};
   } else {
-    return rotated_in_space(stress, l, dt);
+    // 1 + (W + ½W²)/(1 + ¼|w|²) with W's axial vector w, W² = w wᵀ − |w|².
+    const T x = 0.5 * dt * (l[2][1] - l[1][2]), y = 0.5 * dt * (l[0][2] - l[2][0]),
+            z = 0.5 * dt * (l[1][0] - l[0][1]);
+    const T square = x * x + y * y + z * z, f = 1.0 / (1.0 + 0.25 * square), g = 0.5 * f;
+    const std::array<T, 3> r0{1.0 + g * (x * x - square), f * -z + g * x * y, f * y + g * x * z};
+    const std::array<T, 3> r1{f * z + g * x * y, 1.0 + g * (y * y - square), f * -x + g * y * z};
+    const std::array<T, 3> r2{f * -y + g * x * z, f * x + g * y * z, 1.0 + g * (z * z - square)};
+    return {between<T>(stress, r0, r0), between<T>(stress, r1, r1), between<T>(stress, r2, r2),
+            between<T>(stress, r0, r1), between<T>(stress, r1, r2), between<T>(stress, r2, r0)};
   }
 }
 
 /// At least the largest principal value, and at most the smallest; in the plane these themselves.
+template <class T>
 struct PrincipalBounds {
-  double largest, smallest;
+  T largest, smallest;
 };
-template <int D>
-PrincipalBounds principal_bounds(const Stress<D>& s) {
+template <int D, class T>
+QUICKSAND_INLINE PrincipalBounds<T> principal_bounds(const Stress<D, T>& s) {
+  const T mean = D == 2 ? 0.5 * (s[0] + s[1]) : trace(s) / 3;
   if constexpr (D == 2) {
-    const double mean = 0.5 * (s[0] + s[1]), half = 0.5 * (s[0] - s[1]);
-    const double radius = std::sqrt(half * half + s[3] * s[3]);
-    return {std::max(mean + radius, s[2]), std::min(mean - radius, s[2])};
+    const T half = 0.5 * (s[0] - s[1]), radius = square_root(half * half + s[3] * s[3]);
+    const T larger = mean + radius, smaller = mean - radius;
+    return {where(larger > s[2], larger, s[2]), where(smaller < s[2], smaller, s[2])};
   } else {
-    const double reach = std::sqrt(2.0 / 3.0 * contracted(deviator(s))), mean = trace(s) / 3;
+    const T reach = square_root(2.0 / 3.0 * contracted(deviator(s)));
     return {mean + reach, mean - reach};
   }
 }

@@ -202,6 +202,9 @@ Plan make_plan(const Scene& scene, const Calibration& machine) {
       machine.seconds(scene, plan.steps, static_cast<double>(plan.soil_points + plan.water_points));
   plan.seconds += output_seconds(scene, plan);
   add_companions(scene, machine, plan);
+  plan.kind = error_class(scene);
+  plan.expected_error = expected_error(scene);
+  if (!scene.numerics.chosen.empty()) plan.reasons.push_back("Chosen: " + scene.numerics.chosen + ".");
   return plan;
 }
 

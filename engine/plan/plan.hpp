@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/plan/calibration.hpp"
+#include "engine/plan/expected_error.hpp"
 #include "engine/plan/stage_plan.hpp"
 #include "engine/scene/scene.hpp"
 
@@ -31,7 +32,9 @@ struct Plan {
   std::vector<StepBound> bounds;
   double end_time = 0;  ///< s, sum of the stages' (longest) durations
   double steps = 0;
-  double seconds = 0;  ///< estimated wall time on this machine
+  double seconds = 0;  ///< estimated wall time on one core of this machine
+  ErrorClass kind = ErrorClass::smooth;
+  double expected_error = 0;  ///< –, see expected_error.hpp
 };
 
 /// Requires `check(scene)` to be empty.

@@ -4,9 +4,6 @@
 // scatter needs no atomics, and the order of every sum is fixed by the blocks alone: the result does not
 // depend on the number of threads.
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cstdint>
 #include <initializer_list>
@@ -16,14 +13,20 @@
 
 #include "engine/grid/field.hpp"
 #include "engine/grid/grid.hpp"
+#include "engine/threads/parallel.hpp"
 
 namespace quicksand {
 
-/// Points of one set grouped by block, in a reproducible order.
+/// Points of one set grouped by cell, block after block, in a reproducible order.
 struct BlockList {
   std::vector<std::uint32_t> order;  ///< point indices
-  std::vector<std::uint32_t> begin;  ///< per active block, size active + 1
-  std::vector<int> key;              ///< per point, the block that holds it
+  std::vector<std::uint32_t> begin;  ///< per cell of the active blocks (Blocks::kCells each), and the end
+  std::vector<int> key;              ///< per point, Blocks::key_of the cell that holds it
+};
+
+/// Some of the places in `order`.
+struct PointRange {
+  std::uint32_t begin = 0, end = 0;
 };
 
 template <int D>
@@ -31,6 +34,7 @@ class Blocks {
  public:
   static constexpr int kEdge = 4;  ///< cells; must exceed a kernel's reach of 3 faces
   static constexpr int kColors = 1 << D;
+  static constexpr int kCells = D == 2 ? 16 : 64;  ///< of a block
 
   Blocks() = default;
   explicit Blocks(const Grid<D>& grid) : cells_(grid.cells) {
@@ -49,14 +53,20 @@ class Blocks {
     for (int d = D - 1; d >= 0; --d) b = b * blocks_[d] + c[d] / kEdge;
     return b;
   }
+  /// Which block holds a cell, and where in it: place × kCells + number, x fastest.
+  int key_of(const Cell<D>& c) const {
+    int at = 0;
+    for (int d = D - 1; d >= 0; --d) at = at * kEdge + c[d] % kEdge;
+    return block_of(c) * kCells + at;
+  }
   /// A block that is always active.
   void pin(int block) { pinned_.push_back(block); }
 
-  /// Blocks of points, into `list.key`.
+  /// Cells of points, into `list.key`.
   void locate(const Grid<D>& grid, const std::vector<Vec<D>>& x, BlockList& list) const {
     list.key.resize(x.size());
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, x.size(), 4096), [&](const auto& range) {
-      for (std::size_t p = range.begin(); p < range.end(); ++p) list.key[p] = block_of(grid.cell_of(x[p]));
+    parallel_parts(x.size(), 4096, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t p = begin; p < end; ++p) list.key[p] = key_of(grid.cell_of(x[p]));
     });
   }
 
@@ -68,7 +78,7 @@ class Blocks {
       if (!held_[b]) held_[b] = 1, holding.push_back(b);
     };
     for (const BlockList* list : lists)
-      for_runs(list->key, [&](int b, std::size_t, std::size_t) { hold(b); });
+      for_runs(list->key, [&](int key, std::size_t, std::size_t) { hold(key / kCells); });
     for (const int b : pinned_) hold(b);
     const std::vector<int> before = clear();
     for (const int b : holding) {
@@ -93,19 +103,38 @@ class Blocks {
     number();
   }
 
-  /// Groups located points by active block (stable counting sort of their indices).
+  /// Groups located points by cell of the active blocks (stable counting sort of their indices).
   void group(BlockList& list) const {
-    list.begin.assign(count() + 1, 0);
-    for_runs(list.key, [&](int b, std::size_t from, std::size_t to) {
-      list.begin[number_[b]] += static_cast<std::uint32_t>(to - from);
+    const auto slot = [&](int key) { return (number_[key / kCells] - 1) * kCells + key % kCells; };
+    list.begin.assign(static_cast<std::size_t>(count()) * kCells + 1, 0);
+    for_runs(list.key, [&](int key, std::size_t from, std::size_t to) {
+      list.begin[slot(key) + 1] += static_cast<std::uint32_t>(to - from);
     });
-    for (int i = 0; i < count(); ++i) list.begin[i + 1] += list.begin[i];
+    for (std::size_t i = 0; i + 1 < list.begin.size(); ++i) list.begin[i + 1] += list.begin[i];
     list.order.resize(list.key.size());
     std::vector<std::uint32_t> next(list.begin.begin(), list.begin.end() - 1);
-    for_runs(list.key, [&](int b, std::size_t from, std::size_t to) {
-      std::uint32_t& at = next[number_[b] - 1];
+    for_runs(list.key, [&](int key, std::size_t from, std::size_t to) {
+      std::uint32_t& at = next[slot(key)];
       for (std::size_t p = from; p < to; ++p) list.order[at++] = static_cast<std::uint32_t>(p);
     });
+  }
+  /// Grouped points of an active block.
+  PointRange points(const BlockList& list, int number) const {
+    const auto first = static_cast<std::size_t>(number) * kCells;
+    return {list.begin[first], list.begin[first + kCells]};
+  }
+  /// f(cell, points) for the cells of an active block that hold grouped points.
+  template <class F>
+  void cells_with_points(const BlockList& list, int number, F&& f) const {
+    const Cell<D> low = low_cell(active_[number]);
+    const auto first = static_cast<std::size_t>(number) * kCells;
+    for (int k = 0; k < kCells; ++k) {
+      const PointRange points{list.begin[first + k], list.begin[first + k + 1]};
+      if (points.begin == points.end) continue;
+      Cell<D> c = low;
+      for (int d = 0, rest = k; d < D; rest /= kEdge, ++d) c[d] += rest % kEdge;
+      f(c, points);
+    }
   }
 
   /// Active blocks. From here on a block is its number among them, in the order of their places.
@@ -141,9 +170,9 @@ class Blocks {
   /// The same for a block by its place.
   template <class F>
   void cells_at(const Grid<D>& grid, int block, bool with_upper_faces, F&& f) const {
-    Cell<D> low, high;
-    for (int d = 0, rest = block; d < D; rest /= blocks_[d], ++d) {
-      low[d] = rest % blocks_[d] * kEdge;
+    const Cell<D> low = low_cell(block);
+    Cell<D> high;
+    for (int d = 0; d < D; ++d) {
       high[d] = std::min(low[d] + kEdge, cells_[d]);
       if (with_upper_faces && high[d] == cells_[d]) ++high[d];
     }
@@ -159,10 +188,15 @@ class Blocks {
   }
 
  private:
+  Cell<D> low_cell(int block) const {
+    Cell<D> low;
+    for (int d = 0; d < D; block /= blocks_[d], ++d) low[d] = block % blocks_[d] * kEdge;
+    return low;
+  }
   template <class F>
   static void parallel(std::size_t n, F&& f) {
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, n, 2), [&](const auto& range) {
-      for (std::size_t i = range.begin(); i < range.end(); ++i) f(i);
+    parallel_parts(n, 2, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) f(i);
     });
   }
   /// f(key, from, to) for stretches of equal keys, which are long where points lie in the order of blocks.

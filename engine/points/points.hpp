@@ -10,8 +10,8 @@ namespace quicksand {
 
 template <int D>
 inline constexpr int kStress = D == 2 ? 4 : 6;  ///< xx yy zz xy [yz zx]
-template <int D>
-using Stress = std::array<double, kStress<D>>;
+template <int D, class T = double>
+using Stress = std::array<T, kStress<D>>;
 
 /// What both phases' points carry.
 template <int D>

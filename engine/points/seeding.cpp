@@ -116,9 +116,9 @@ PointCounts count_points(const Scene& scene, const Grid<D>& grid) {
   BlockList list;
   covered_places<D>(scene, grid, [&](const Vec<D>& x, std::size_t b) {
     const Body& body = scene.bodies[b];
-    const int block = blocks.block_of(grid.cell_of(x));
+    const int cell = blocks.key_of(grid.cell_of(x));
     const bool moves = !body.fixed || body.kind != BodyKind::soil;
-    if (moves && (list.key.empty() || list.key.back() != block)) list.key.push_back(block);
+    if (moves && (list.key.empty() || list.key.back() != cell)) list.key.push_back(cell);
     if (body.kind != BodyKind::water) ++(body.fixed ? counts.fixed : counts.soil);
     if (body.kind != BodyKind::soil) ++counts.water;
   });

@@ -78,6 +78,7 @@ struct Progress {
   std::string bound;       ///< what limits it
   std::size_t frames = 0;  ///< that the sink has
   double eta_s = 0;
+  double wall_seconds = 0;  ///< that the run has computed, before it was resumed included
 };
 
 /// Called after every step from the run's own thread; must be cheap.

@@ -33,7 +33,7 @@ Vec<D> velocity_at(const State<D>& s, const Walls<D>& walls, const Vec<D>& x, Ve
     const PointKernel<D, decltype(shape)> kernel(s.grid, x);
     for (int d = 0; d < D; ++d)
       for_faces(s.grid, walls, kernel, d, [&](int face, double w, double sign, const Vec<D>&) {
-        v[d] += sign * w * velocity(s.flow[d][face]);
+        v[d] += sign * w * velocity(s.speeds[d][face]);
       });
   });
   return v;
@@ -82,12 +82,12 @@ double head_at(const State<D>& s, const Vec<D>& x, double pressure) {
 
 template <int D>
 Vec<D> water_velocity_at(const State<D>& s, const Vec<D>& x) {
-  return velocity_at<D>(s, s.water_walls, x, [](const FaceFlow& f) { return f.water; });
+  return velocity_at<D>(s, s.water_walls, x, [](const FaceSpeeds& f) { return f.water; });
 }
 
 template <int D>
 Vec<D> soil_velocity_at(const State<D>& s, const Vec<D>& x) {
-  return velocity_at<D>(s, s.soil_walls, x, [](const FaceFlow& f) { return f.soil; });
+  return velocity_at<D>(s, s.soil_walls, x, [](const FaceSpeeds& f) { return f.soil; });
 }
 
 template <int D>
@@ -134,7 +134,7 @@ double flow_through(const State<D>& s, const Segment& line) {
     for (int cell : {face - s.grid.stride[d], face})
       part += 0.5 * std::clamp(0.5 + s.cell[cell].depth, 0.0, 1.0);
     if (submerged(s, d, face)) part = 1;
-    flow += part * f.n * f.water * s.grid.face_area() * s.grid.face_radius(d, face);
+    flow += part * f.n * s.speeds[d][face].water * s.grid.face_area() * s.grid.face_radius(d, face);
   }
   return flow;
 }

@@ -157,6 +157,7 @@ State<D> make_state(const Scene& scene) {
   s.water = std::move(points.water);
   s.has_water = has_water(scene);
   s.has_soil = s.soil.size() + s.fixed.size() > 0;
+  s.counts_room = s.has_water || !scene.output.probes.empty() || !scene.loads.empty();
   keep_discharge(s, s.soil), keep_discharge(s, s.fixed);
   for (int d = 0; d < D; ++d) {
     s.sums[d] = Field<FaceSums>(s.grid.count());

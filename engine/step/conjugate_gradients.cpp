@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "engine/step/chunks.hpp"
+#include "engine/threads/chunks.hpp"
 
 namespace quicksand {
 namespace {

@@ -1,11 +1,10 @@
 // How fast the water passes the grains of soils whose drag asks for it (Ergun).
 
-#include <tbb/parallel_for.h>
-
 #include <cmath>
 
 #include "engine/grid/stencil.hpp"
 #include "engine/step/phases.hpp"
+#include "engine/threads/chunks.hpp"
 
 namespace quicksand {
 namespace {
@@ -17,11 +16,12 @@ double relative_speed(const State<D>& s, const Vec<D>& x, bool fixed) {
   double square = 0;
   for (int d = 0; d < D; ++d) {
     double v = 0;
-    for_faces(s.grid, s.water_walls, kernel, d,
-              [&](int face, double w, double sign, const Vec<D>&) { v += sign * w * s.flow[d][face].water; });
+    for_faces(s.grid, s.water_walls, kernel, d, [&](int face, double w, double sign, const Vec<D>&) {
+      v += sign * w * s.speeds[d][face].water;
+    });
     if (!fixed)
       for_faces(s.grid, s.soil_walls, kernel, d, [&](int face, double w, double sign, const Vec<D>&) {
-        v -= sign * w * s.flow[d][face].soil;
+        v -= sign * w * s.speeds[d][face].soil;
       });
     square += v * v;
   }
@@ -34,10 +34,12 @@ double relative_speed(const State<D>& s, const Vec<D>& x, bool fixed) {
 /// same limit.
 template <class Shape, int D>
 void follow(const State<D>& s, SoilPoints<D>& soil, bool fixed) {
-  tbb::parallel_for(std::size_t{0}, soil.discharge.size(), [&](std::size_t p) {
-    if (!s.constants.soils[soil.soil[p]].drag.follows_speed()) return;
-    const double now = soil.porosity[p] * relative_speed<Shape, D>(s, soil.x[p], fixed);
-    soil.discharge[p] = 0.5 * (soil.discharge[p] + now);
+  for_chunks(soil.discharge.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t p = begin; p < end; ++p) {
+      if (!s.constants.soils[soil.soil[p]].drag.follows_speed()) continue;
+      const double now = soil.porosity[p] * relative_speed<Shape, D>(s, soil.x[p], fixed);
+      soil.discharge[p] = 0.5 * (soil.discharge[p] + now);
+    }
   });
 }
 

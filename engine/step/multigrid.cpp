@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "engine/step/chunks.hpp"
+#include "engine/threads/chunks.hpp"
 
 namespace quicksand {
 namespace {

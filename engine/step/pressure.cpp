@@ -4,6 +4,7 @@
 
 #include "engine/step/conjugate_gradients.hpp"
 #include "engine/step/phases.hpp"
+#include "engine/threads/parallel.hpp"
 
 namespace quicksand {
 namespace {
@@ -24,7 +25,7 @@ double speed_in(const State<D>& s, int cell) {
   double speed = 0;
   for (int d = 0; d < D; ++d)
     for (int face : {cell, cell + s.grid.stride[d]})
-      speed = std::max(speed, std::abs(s.flow[d][face].water_old));
+      speed = std::max(speed, std::abs(s.speeds[d][face].water_old));
   return speed;
 }
 
@@ -84,8 +85,8 @@ void assemble(State<D>& s, PressureSystem<D>& m, double dt) {
   m.diagonal.resize(rows), m.rhs.resize(rows), m.solution.resize(rows);
   for (int d = 0; d < D; ++d) m.upper[d].resize(rows), m.lower[d].resize(rows), m.coupling[d].resize(rows);
   const double inverse_h = s.grid.inverse_h, inverse_h2 = inverse_h * inverse_h;
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, rows, 512), [&](const auto& range) {
-    for (std::size_t r = range.begin(); r < range.end(); ++r) {
+  parallel_parts(rows, 512, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t r = begin; r < end; ++r) {
       const int i = m.cell[r];
       const CellState& c = s.cell[i];
       const double radius = kAxial ? s.grid.cell_radius(i) : 1;
@@ -100,7 +101,7 @@ void assemble(State<D>& s, PressureSystem<D>& m, double dt) {
           if (s.water_walls.closed(d, face)) continue;
           const FaceFlow& f = s.flow[d][face];
           const double at = kAxial ? s.grid.face_radius(d, face) : 1;
-          rhs += (1 - 2 * side) * at * f.flux() * inverse_h;
+          rhs += (1 - 2 * side) * at * f.flux(s.speeds[d][face]) * inverse_h;
           const double beta = at * f.flux_response() * inverse_h2;
           const CellState& o = s.cell[other];
           if (const Port<D>* port = port_at(s, d, face)) {

@@ -1,5 +1,6 @@
 // Points → faces and cells: masses, momenta, internal forces, drag, volumes.
 
+#include "engine/grid/stencil.hpp"
 #include "engine/step/batches.hpp"
 #include "engine/step/phases.hpp"
 #include "engine/step/scheme.hpp"
@@ -7,13 +8,21 @@
 namespace quicksand {
 namespace {
 
-/// Row d of the symmetric effective stress.
+/// Row d of a symmetric tensor.
 template <int D>
-Vec<D> stress_row(const Stress<D>& s, int d) {
+QUICKSAND_INLINE std::array<BatchLanes, D> stress_row(const Stress<D, BatchLanes>& s, int d) {
   if constexpr (D == 2)
-    return d == 0 ? Vec<2>{s[0], s[3]} : Vec<2>{s[3], s[1]};
+    return {d == 0 ? s[0] : s[3], d == 0 ? s[3] : s[1]};
   else
-    return d == 0 ? Vec<3>{s[0], s[3], s[5]} : d == 1 ? Vec<3>{s[3], s[1], s[4]} : Vec<3>{s[5], s[4], s[2]};
+    return {d == 0   ? s[0]
+            : d == 1 ? s[3]
+                     : s[5],
+            d == 0   ? s[3]
+            : d == 1 ? s[1]
+                     : s[4],
+            d == 0   ? s[5]
+            : d == 1 ? s[4]
+                     : s[2]};
 }
 
 /// m/s, for drag that follows it.
@@ -22,95 +31,183 @@ double discharge_of(const SoilPoints<D>& soil, std::size_t p) {
   return soil.discharge.empty() ? 0 : soil.discharge[p];
 }
 
-/// Velocity of component d that a point gives to a face: its own, and with the affine transfer what its
-/// gradient adds on the way there. [JSSTS15] eq. (8), per component of the staggered grid.
-template <class S, int D>
-double velocity_at_face(const PointSet<D>& set, std::uint32_t p, int d, const FaceWeight<D>& weight) {
-  double v = set.v[p][d];
-  if constexpr (S::affine)
-    for (int j = 0; j < D; ++j) v += set.affine[p][d][j] * weight.arm[j];
+/// Lanes of FaceSums. While soil is summed, that of the water's mass, which it does not have, takes the part
+/// of the force that goes with the derivative along the component's own axis, so that one product does for
+/// all of a node.
+constexpr int kMomentum = 3, kForce = 4, kOwnForce = 6;
+Lanes<8> unit(int lane) {
+  Lanes<8> v{};
+  v[lane] = 1;
   return v;
 }
 
-/// What a soil point leaves on faces of one component, per weight w and gradient g:
-/// w `carried`, and the force −bulk (σ·g + w hoop) with w `resistivity`.
+/// Of a batch of soil points.
 template <int D>
 struct SoilShare {
-  Lanes<4> carried;  ///< mass, grains, bulk, momentum
-  Vec<D> stress;     ///< −bulk × row of the stress, [FMS19] eq. (1), ∇·σ′ in its weak form
-  double hoop = 0;   ///< the same of σθθ/r, which pulls towards the axis: the weak form's σθθ v_r/r
-  double resistivity = 0;
+  BatchLanes mass, grains, bulk, resistivity{};  ///< kg, m³, m³, N·s/m
+  Stress<D, BatchLanes> force;                   ///< N, −bulk × stress / h
 };
 
-template <int D, class Row>
-QUICKSAND_INLINE void add_row(Field<FaceSums>& sums, const Row& row, const SoilShare<D>& share) {
-  const Lanes<4> carried = row.w * share.carried;
-  double across = row.w * share.hoop;
-  for (int j = 1; j < D; ++j) across += share.stress[j] * row.gradient[j];
-  const Lanes<2> with_weight{across, row.w * share.resistivity},
-      with_slope{share.stress[0] * row.gradient[0], 0};
-  for (std::size_t i = 0; i < row.x.size(); ++i) {
-    FaceSums& f = sums[row.first + i];
-    add_lanes<4>(f.soil_mass, row.x[i] * carried);
-    add_lanes<2>(f.soil_force, row.x[i] * with_weight + row.dx[i] * with_slope);
-  }
-}
-
-template <class S, int D, class Kernel>
-void soil_to_faces(State<D>& s, std::uint32_t p, const Kernel& kernel) {
+template <int D>
+QUICKSAND_INLINE SoilShare<D> soil_share(const State<D>& s, const PointBatch<D>& batch) {
   const SoilPoints<D>& soil = s.soil;
-  const SoilMaterial& material = s.constants.soils[soil.soil[p]];
-  const double mass = soil.mass[p], n = soil.porosity[p];
-  const double grains = mass / material.grain_density, bulk = grains / (1 - n);
-  const double resistivity = s.has_water ? bulk * material.drag.resistivity(n, discharge_of(soil, p)) : 0;
-  const bool open = !S::affine && !s.soil_walls.folds(kernel.home());
-  for_components<D>([&](auto d) {
-    SoilShare<D> share{
-        {mass, grains, bulk, mass * soil.v[p][d]}, stress_row<D>(soil.stress[p], d), 0, resistivity};
-    for (double& component : share.stress) component *= -bulk;
-    if (S::axial && d == 0) share.hoop = -bulk * soil.stress[p][2] / soil.x[p][0];
-    if (open) {
-      for_rows(s.grid, kernel, d, [&](const auto& row) { add_row<D>(s.sums[d], row, share); });
-      return;
+  const auto& soils = s.constants.soils;
+  BatchLanes density = all_lanes<BatchLanes>(soils.front().grain_density);
+  if (soils.size() > 1)
+    for (int k = 0; k < kBatch; ++k) density[k] = soils[soil.soil[batch.point[k]]].grain_density;
+  SoilShare<D> share;
+  const BatchLanes n = batch.get(soil.porosity);
+  share.mass = batch.get(soil.mass);
+  share.grains = share.mass / density;
+  share.bulk = share.grains / (1.0 - n);
+  if (s.has_water)
+    for (int k = 0; k < batch.count; ++k) {
+      const std::uint32_t p = batch.point[k];
+      share.resistivity[k] =
+          share.bulk[k] * soils[soil.soil[p]].drag.resistivity(n[k], discharge_of(soil, p));
     }
-    for_faces(s.grid, s.soil_walls, kernel, d, [&](int face, const FaceWeight<D>& weight, double sign) {
-      FaceSums& f = s.sums[d][face];
-      const double w = weight.w, momentum = sign * mass * velocity_at_face<S>(soil, p, d, weight);
-      double force = w * share.hoop;
-      for (int j = 0; j < D; ++j) force += share.stress[j] * weight.gradient[j];
-      add_lanes<4>(f.soil_mass, w * Lanes<4>{mass, grains, bulk, momentum});
-      add_lanes<2>(f.soil_force, Lanes<2>{sign * force, w * resistivity});
-      if (sign < 0) s.image[d][face].soil += 2 * w * mass;
-    });
-  });
-  // Room is measured with the water's own kernels, so that grains and water fold at the same walls.
-  const Lanes<2> room{grains, bulk};
-  for_centers(s.grid, s.water_walls, kernel,
-              [&](int cell, double w) { add_lanes<2>(s.cell_sums[cell].grains, w * room); });
+  share.force = batch.get(soil.stress);
+  const BatchLanes per_cell = -s.grid.inverse_h * share.bulk;
+  for (BatchLanes& component : share.force) component *= per_cell;
+  return share;
 }
 
-template <class S, int D, class Kernel>
-void water_to_faces(State<D>& s, std::uint32_t p, const Kernel& kernel) {
-  const double mass = s.water.mass[p], volume = mass / s.constants.water_density;
-  const bool open = !S::affine && !s.water_walls.folds(kernel.home());
-  for_components<D>([&](auto d) {
-    if (open) {
-      const Lanes<2> carried{mass, mass * s.water.v[p][d]};
-      for_rows(s.grid, kernel, d, [&](const auto& row) {
-        const Lanes<2> share = row.w * carried;
-        for (std::size_t i = 0; i < row.x.size(); ++i)
-          add_lanes<2>(s.sums[d][row.first + i].water_mass, row.x[i] * share);
-      });
-      return;
+/// What soil point k leaves on the window of component d, by node: `carried` in the order of FaceSums, and
+/// the forces per derivative of its weights (per cell), [FMS19] eq. (1), ∇·σ′ in its weak form.
+template <class S, int d, int D, class Kernel>
+QUICKSAND_INLINE void add_soil(const Kernel& kernel, int k, const Lanes<8>& carried,
+                               const std::array<BatchLanes, D>& force, double h, const Vec<D>* gradient,
+                               std::array<Lanes<8>, CellWindow<D>::kFaces>& sums) {
+  const auto& own = kernel.face[d];
+  const auto& other = kernel.center[axis_of(d, 1)];
+  const auto& last = kernel.center[axis_of(d, D - 1)];
+  const auto own_force = unit(kOwnForce) > 0.5;
+  std::array<Lanes<8>, 4> along;
+  for (int x = 0; x < 4; ++x)
+    along[x] = where(own_force, all_lanes<Lanes<8>>(own.dw[x][k]), all_lanes<Lanes<8>>(own.w[x][k]));
+  for (int z = 0; z < CellWindow<D>::kLast; ++z)
+    for (int y = 0; y < 3; ++y) {
+      double w = other.w[y][k], across = other.dw[y][k] * force[axis_of(d, 1)][k];
+      if constexpr (D == 3) {
+        across = across * last.w[z][k] + w * last.dw[z][k] * force[axis_of(d, 2)][k];
+        w *= last.w[z][k];
+      }
+      Lanes<8> row = w * carried + across * unit(kForce);
+      Lanes<8> turning{};         // momentum per arm along the own axis
+      if constexpr (S::affine) {  // [JSSTS15] eq. (8), per component of the staggered grid
+        const double mass = w * carried[0] * h;
+        double arms = (*gradient)[axis_of(d, 1)] * (y - 1 - other.at[k]);
+        if constexpr (D == 3) arms += (*gradient)[axis_of(d, 2)] * (z - 1 - last.at[k]);
+        row += mass * arms * unit(kMomentum);
+        turning = mass * (*gradient)[d] * unit(kMomentum);
+      }
+      for (int x = 0; x < 4; ++x) {
+        Lanes<8>& sum = sums[x + 4 * (y + 3 * z)];
+        sum += along[x] * row;
+        if constexpr (S::affine) sum += own.w[x][k] * (x - 1 - own.at[k]) * turning;
+      }
     }
-    for_faces(s.grid, s.water_walls, kernel, d, [&](int face, const FaceWeight<D>& weight, double sign) {
-      const double w = weight.w, momentum = sign * mass * velocity_at_face<S>(s.water, p, d, weight);
-      add_lanes<2>(s.sums[d][face].water_mass, w * Lanes<2>{mass, momentum});
-      if (sign < 0) s.image[d][face].water += 2 * w * mass;
-    });
+}
+
+/// Adds w × value of point k to the window of centres.
+template <int D, class Kernel, class T>
+QUICKSAND_INLINE void add_to_centers(const Kernel& kernel, int k, const T& value,
+                                     std::array<T, CellWindow<D>::kCenters>& sums) {
+  for (int z = 0; z < (D == 3 ? 3 : 1); ++z)
+    for (int y = 0; y < 3; ++y) {
+      const T row =
+          (D == 2 ? kernel.center[1].w[y][k] : kernel.center[1].w[y][k] * kernel.center[D - 1].w[z][k]) *
+          value;
+      for (int x = 0; x < 3; ++x) sums[x + 3 * (y + 3 * z)] += kernel.center[0].w[x][k] * row;
+    }
+}
+
+template <class S, int D>
+void soil_to_faces(State<D>& s, const Cell<D>& cell, const PointBatch<D>& batch) {
+  const std::array<BatchLanes, D> x = batch.get(s.soil.x), v = batch.get(s.soil.v);
+  CellKernel<D, typename S::Shape> kernel;
+  kernel.find(s.grid, cell, x);
+  const SoilShare<D> share = soil_share(s, batch);
+  const int home = s.grid.index(cell);
+  const CellWindow<D> window(s.grid, s.soil_walls, home);
+  const Lanes<8> kept{1, 1, 1, 1, 1, 1, 0, 0}, turned{1, 1, 1, -1, -1, 1, 0, 0};
+  for_components<D>([&](auto d) __attribute__((always_inline)) {
+    BatchLanes hoop{};  // about an axis σθθ/r pulls towards it: the weak form's σθθ v_r/r
+    if constexpr (S::axial && d == 0) hoop = s.grid.h * share.force[2] / x[0];
+    const std::array<BatchLanes, D> force = stress_row<D>(share.force, d);
+    const std::array<Lanes<8>, 8> carried =
+        transposed({share.mass, share.grains, share.bulk, share.mass * v[d], hoop, share.resistivity,
+                    force[d], BatchLanes{}});
+    std::array<Lanes<8>, CellWindow<D>::kFaces> sums{};
+    for (int k = 0; k < batch.count; ++k)
+      add_soil<S, d, D>(kernel, k, carried[k], force, s.grid.h,
+                        S::affine ? &s.soil.affine[batch.point[k]][d] : nullptr, sums);
+    window.faces(
+        d, [&](int node, int face, double sign) __attribute__((always_inline)) {
+          const Lanes<8> sum =
+              sums[node] + __builtin_shufflevector(sums[node], sums[node], 7, 7, 7, 7, kOwnForce, 7, 7, 7);
+          add_lanes<8>(s.sums[d][face].soil_mass, (sign < 0 ? turned : kept) * sum);
+          if (sign < 0) s.image[d][face].soil += 2 * sum[0];
+        });
   });
-  for_centers(s.grid, s.water_walls, kernel,
-              [&](int cell, double w) { s.cell_sums[cell].water += w * volume; });
+  if (!s.counts_room) return;
+  // Room is measured with the water's own kernels, so that grains and water fold at the same walls.
+  std::array<Lanes<2>, CellWindow<D>::kCenters> room{};
+  for (int k = 0; k < batch.count; ++k)
+    add_to_centers<D>(kernel, k, Lanes<2>{share.grains[k], share.bulk[k]}, room);
+  CellWindow<D>(s.grid, s.water_walls, home).centers([&](int node, int to) __attribute__((always_inline)) {
+    add_lanes<2>(s.cell_sums[to].grains, room[node]);
+  });
+}
+
+/// What a water point leaves on the window of component d: mass and momentum.
+template <class S, int d, int D, class Kernel>
+QUICKSAND_INLINE void add_water(const State<D>& s, const Kernel& kernel, int k, std::uint32_t p,
+                                std::array<Lanes<2>, CellWindow<D>::kFaces>& sums) {
+  const double mass = s.water.mass[p];
+  const Lanes<2> carried{mass, mass * s.water.v[p][d]};
+  const auto& own = kernel.face[d];
+  const auto& other = kernel.center[axis_of(d, 1)];
+  const auto& last = kernel.center[axis_of(d, D - 1)];
+  for (int z = 0; z < (D == 3 ? 3 : 1); ++z)
+    for (int y = 0; y < 3; ++y) {
+      const double w = D == 2 ? other.w[y][k] : other.w[y][k] * last.w[z][k];
+      Lanes<2> row = w * carried, turning{};
+      if constexpr (S::affine) {
+        const Vec<D>& gradient = s.water.affine[p][d];
+        const double momentum = w * mass * s.grid.h;
+        double across = gradient[axis_of(d, 1)] * (y - 1 - other.at[k]);
+        if constexpr (D == 3) across += gradient[axis_of(d, 2)] * (z - 1 - last.at[k]);
+        row += Lanes<2>{0, momentum * across};
+        turning = Lanes<2>{0, momentum * gradient[d]};
+      }
+      for (int x = 0; x < 4; ++x) {
+        Lanes<2>& sum = sums[x + 4 * (y + 3 * z)];
+        sum += own.w[x][k] * row;
+        if constexpr (S::affine) sum += own.w[x][k] * (x - 1 - own.at[k]) * turning;
+      }
+    }
+}
+
+template <class S, int D>
+void water_to_faces(State<D>& s, const Cell<D>& cell, const PointBatch<D>& batch) {
+  CellKernel<D, typename S::Shape> kernel;
+  kernel.find(s.grid, cell, batch.get(s.water.x));
+  const CellWindow<D> window(s.grid, s.water_walls, s.grid.index(cell));
+  for_components<D>([&](auto d) {
+    std::array<Lanes<2>, CellWindow<D>::kFaces> sums{};
+    for (int k = 0; k < batch.count; ++k) add_water<S, d>(s, kernel, k, batch.point[k], sums);
+    window.faces(
+        d, [&](int node, int face, double sign) __attribute__((always_inline)) {
+          add_lanes<2>(s.sums[d][face].water_mass, Lanes<2>{1, sign} * sums[node]);
+          if (sign < 0) s.image[d][face].water += 2 * sums[node][0];
+        });
+  });
+  std::array<double, CellWindow<D>::kCenters> volume{};
+  for (int k = 0; k < batch.count; ++k)
+    add_to_centers<D>(kernel, k, s.water.mass[batch.point[k]] / s.constants.water_density, volume);
+  window.centers([&](int node, int to)
+                     __attribute__((always_inline)) { s.cell_sums[to].water += volume[node]; });
 }
 
 }  // namespace
@@ -128,17 +225,18 @@ void points_to_faces(State<D>& s) {
         if (image.soil != 0 || image.water != 0) image = {};
         s.soil_walls.commit_separated(d, i);
       }
-      s.cell_sums[i] = has_fixed ? s.fixed_cell[i] : CellSums{};
+      if (s.counts_room) s.cell_sums[i] = has_fixed ? s.fixed_cell[i] : CellSums{};
     });
   });
   with_scheme(s, [&](auto scheme) {
     using S = decltype(scheme);
-    using Shape = typename S::Shape;
     s.blocks.by_color([&](int b) {
-      for_points<Shape>(s.grid, s.soil.x, s.soil_blocks, b,
-                        [&](std::uint32_t p, const auto& kernel) { soil_to_faces<S>(s, p, kernel); });
-      for_points<Shape>(s.grid, s.water.x, s.water_blocks, b,
-                        [&](std::uint32_t p, const auto& kernel) { water_to_faces<S>(s, p, kernel); });
+      for_batches(s.blocks, s.soil_blocks, b, [&](const Cell<D>& cell, const PointBatch<D>& batch) {
+        soil_to_faces<S, D>(s, cell, batch);
+      });
+      for_batches(s.blocks, s.water_blocks, b, [&](const Cell<D>& cell, const PointBatch<D>& batch) {
+        water_to_faces<S, D>(s, cell, batch);
+      });
     });
   });
   loads_to_faces(s);

@@ -142,7 +142,8 @@ std::vector<json> documents() {
     "numerics": {"preset": "fine", "cell_size_factor": 0.25, "points_per_cell": 3, "kernel": "linear",
       "transfer": "flip", "pic_rate": 2, "pressure": "implicit", "pressure_tolerance": 1e-9,
       "time_step_factor": 0.5, "drift_time": 0.1, "quasi_static_transits": 100, "max_steps": 1000,
-      "error_estimate": "finer"}
+      "error_estimate": "finer",
+      "target_error": 0.05, "budget_seconds": 1e6, "chosen": "cells of 0.0625 m"}
   })json"));
   all.push_back(json::parse(R"json({
     "schema": "quicksand.case/1", "name": "space",

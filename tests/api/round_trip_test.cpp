@@ -24,6 +24,8 @@ TEST(RoundTrip, ResolvedCaseIsAFixedPoint) {
       "[]",
       R"([{"op":"add","path":"/materials/water/bulk_modulus","value":"incompressible"}])",
       R"([{"op":"add","path":"/numerics/time_step","value":1.0000000000000001e-4}])",
+      R"([{"op":"remove","path":"/numerics/preset"},{"op":"add","path":"/numerics/target_error","value":0.1}])",
+      R"([{"op":"remove","path":"/numerics/preset"},{"op":"add","path":"/numerics/budget_seconds","value":1e6}])",
       R"([{"op":"replace","path":"/initial","value":{"pressure":"uniform","uniform_pressure":12.5,"stress":"uniform","uniform_stress":[-1,-2,-3,0]}}])",
       R"([{"op":"replace","path":"/initial","value":{"stress":"zero"}}])",
       R"([{"op":"replace","path":"/bodies/4/region","value":{"disc":{"center":[0.45,0.4],"radius":0.1}}}])",
@@ -89,6 +91,45 @@ TEST(Presets, ExplicitKeysWinOverThePreset) {
   EXPECT_EQ(sound(plain).numerics.pressure_tolerance, 1e-5);
   EXPECT_EQ(sound(plain, Preset::standard).numerics.pressure_tolerance, 1e-6);
   EXPECT_EQ(sound(plain, Preset::fine).numerics.pressure_tolerance, 1e-7);
+}
+
+constexpr const char* kTarget =
+    R"([{"op":"remove","path":"/numerics/preset"},{"op":"add","path":"/numerics/target_error","value":0.04}])";
+
+TEST(TargetError, ChoosesCellsAndSaysWhy) {
+  const Scene scene = sound(patched(kTarget));
+  EXPECT_EQ(scene.cell_size(), 0.01);  // 0.065 in draft, 0.035 in standard; nothing between fits the walls
+  EXPECT_EQ(scene.numerics.preset, Preset::standard);
+  EXPECT_EQ(scene.numerics.pressure_tolerance, 1e-8);  // explicit
+  const json numerics = json::parse(resolved_case(scene))["numerics"];
+  EXPECT_EQ(numerics["target_error"], 0.04);
+  EXPECT_EQ(numerics["cell_size_factor"], 1);
+  EXPECT_NE(numerics["chosen"].get<std::string>().find("0.04"), std::string::npos);
+}
+
+TEST(TargetError, WhatWasChosenIsNotChosenAgain) {
+  json chosen = json::parse(resolved_case(sound(patched(kTarget))));
+  chosen["numerics"]["cell_size_factor"] = 2;  // whatever it is, it stays
+  EXPECT_EQ(sound(chosen.dump()).cell_size(), 0.02);
+}
+
+TEST(TargetError, AnAskedForPresetReplacesIt) {
+  const Scene scene = sound(patched(kTarget), Preset::draft);
+  EXPECT_EQ(scene.cell_size(), 0.02);
+  EXPECT_FALSE(scene.numerics.target_error);
+  EXPECT_EQ(scene.numerics.chosen, "");
+}
+
+TEST(Budget, CountsByTheMachinesSpeed) {
+  const std::string text = patched(
+      R"([{"op":"remove","path":"/numerics/preset"},{"op":"add","path":"/numerics/budget_seconds","value":1000}])");
+  Calibration slow;
+  for (StepCost& cost : slow.cost) cost.step *= 30, cost.point *= 30;
+  const ParsedCase here = parse_case(text), there = parse_case(text, {}, slow);
+  ASSERT_TRUE(here.scene && there.scene) << test::said(there.faults);
+  EXPECT_LT(here.scene->cell_size(), there.scene->cell_size());
+  EXPECT_LE(make_plan(*here.scene).seconds, 1000);
+  EXPECT_LE(make_plan(*there.scene, slow).seconds, 1000);
 }
 
 TEST(Presets, AnAskedForPresetReplacesTheCases) {

@@ -3,9 +3,9 @@
 //   pressure/<scene>/cells:<n>     water fills about n × n cells
 
 #include <benchmark/benchmark.h>
-#include <tbb/task_arena.h>
 
 #include "engine/step/step.hpp"
+#include "engine/threads/parallel.hpp"
 #include "tests/bench/groups.hpp"
 #include "tests/bench/scenes.hpp"
 #include "tests/bench/workload.hpp"
@@ -24,8 +24,7 @@ void solve(benchmark::State& state, const Scene& scene) {
   constexpr auto kPressure = static_cast<std::size_t>(Phase::pressure);
   const double before = work->phase_seconds()[kPressure];
   double iterations = 0, unknowns = 0, last = before;
-  tbb::task_arena arena(1);
-  arena.execute([&] {
+  with_threads(1, [&] {
     for (auto _ : state) {
       const PressureReport report = work->step();
       iterations += report.iterations;

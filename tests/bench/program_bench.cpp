@@ -4,7 +4,6 @@
 //   program/<scene>/points:<n>/{steps,run}
 
 #include <benchmark/benchmark.h>
-#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <chrono>
@@ -51,8 +50,7 @@ void bare_steps(benchmark::State& state, const Scene& scene, long steps) {
   const double before = resident_bytes();
   forget_peak();
   for (auto _ : state) {
-    tbb::task_arena arena(1);
-    arena.execute([&] {
+    with_threads(1, [&] {
       const auto work = start(scene);
       work->frame();
       const auto begin = std::chrono::steady_clock::now();

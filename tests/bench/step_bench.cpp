@@ -5,7 +5,6 @@
 
 #include <benchmark/benchmark.h>
 #include <sys/resource.h>
-#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <cmath>
@@ -53,8 +52,7 @@ void measure(benchmark::State& state, Workload& work, int threads) {
   const PhaseSeconds before = work.phase_seconds();
   double point_steps = 0, iterations = 0;
   const double cpu = cpu_seconds();
-  tbb::task_arena arena(threads);
-  arena.execute([&] {
+  with_threads(threads, [&] {
     for (auto _ : state) {
       iterations += work.step().iterations;
       point_steps += work.points();

@@ -97,6 +97,9 @@ class DocumentedIsServedTest(DocumentTest):
 
     def test_everything_documented_is_served_as_documented(self):
         case = small_case()
+        ladder = self.ask("post", "/v1/runs", 201, case, "?kind=tradeoff&budget=1").json()["id"]
+        self.server.wait_for(ladder, "succeeded")
+        self.ask("get", "/v1/runs/{id}", 200, id=ladder)
         run = self.ask("post", "/v1/runs", 201, case, "?label=x", {"Idempotency-Key": "one"}).json()["id"]
         self.server.wait_for(run, "succeeded")
         self.ask_what_goes_well(case, run)
@@ -213,10 +216,12 @@ class DocumentedIsServedTest(DocumentTest):
 
     def ask_a_server_without_room(self, run):
         self.server.stop()
-        self.server.options = ["--set", "max_readers=0"]
+        self.server.options = ["--set", "max_readers=0", "--set", "max_downloads=0"]
         self.server.start()
         self.ask("get", "/v1/runs/{id}/frames/{k}", 503, id=run, k=0)
         self.ask("get", "/v1/runs/{id}/series", 503, id=run)
+        self.ask("get", "/v1/runs/{id}/log", 503, id=run)
+        self.ask("get", "/v1/runs/{id}/results/{file}", 503, id=run, file="run.json")
 
 
 class ServedIsDocumentedTest(DocumentTest):

@@ -41,6 +41,8 @@ TEST_F(MigrationTest, NothingIsLostFromVersion1) {
   EXPECT_EQ(done->retries, 1);
   EXPECT_EQ(done->owner, "");
   EXPECT_FALSE(done->expired);
+  EXPECT_EQ(done->kind, RunKind::run);
+  EXPECT_EQ(done->budget, 0);
   ASSERT_EQ(store.results("aa").size(), 1u);
   EXPECT_EQ(store.results("aa")[0].bytes, 7u);
   const std::string same = sha256_text(sha256_text("{}"));  // as version 1 kept the body of a key

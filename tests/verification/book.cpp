@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <ctime>
@@ -9,6 +10,7 @@
 #include <sstream>
 
 #include "api/case_json.hpp"
+#include "engine/plan/expected_error.hpp"
 
 namespace quicksand::test {
 namespace {
@@ -97,6 +99,7 @@ Page::~Page() {
 }
 
 Recorded Page::run(const Scene& scene, const LedgerLimits& limits, const std::string& label) {
+  expected_ = std::max(expected_, expected_error(scene));
   const std::clock_t start = std::clock();
   Recorded r = record(scene);
   const double cpu = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
@@ -122,7 +125,14 @@ void Page::figure(nlohmann::json entry, double error, double asserted) {
   page_["figures"].push_back(std::move(entry));
 }
 
+void Page::hold_to_the_preset(const std::string& quantity, double relative_error) const {
+  if (expected_ == 0) return;  // a page without a run
+  EXPECT_LE(relative_error, expected_) << quantity << ": more than is told of such cells before they are run";
+}
+
 void Page::error(const std::string& quantity, double value, double held_to, const std::string& unit) {
+  const bool has_unit = unit == "m" || unit == "m/s" || unit == "Pa";
+  if (!has_unit) hold_to_the_preset(quantity, value);
   figure({{"kind", "error"}, {"quantity", quantity}, {"value", value}, {"held_to", held_to}, {"unit", unit}},
          value, held_to);
 }
@@ -135,6 +145,7 @@ void Page::missed_error(const std::string& quantity, double value, double held_t
 
 void Page::near(const std::string& quantity, double value, double reference, double tolerance,
                 const std::string& unit) {
+  if (reference != 0) hold_to_the_preset(quantity, std::abs(value / reference - 1));
   missed_near(quantity, value, reference, tolerance, tolerance, unit);
 }
 

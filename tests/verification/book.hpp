@@ -48,9 +48,11 @@ class Page {
   Recorded run(const Scene& scene, const LedgerLimits& limits = {}, const std::string& label = "");
 
   /// An error ≥ 0, asserted to be at most `held_to`. Errors of one quantity over pages of different cell size
-  /// give the order of convergence.
+  /// give the order of convergence. One that has no unit is also held to what is told of such cells before
+  /// they are run (engine/plan/expected_error.hpp), as are values by `near`.
   void error(const std::string& quantity, double value, double held_to, const std::string& unit);
-  /// The same where the tolerance that the case is held to is not met: asserts `measured`, an honest bound.
+  /// The same where the tolerance that the case is held to is not met, or was measured in an experiment:
+  /// asserts `measured`, an honest bound, and nothing else.
   void missed_error(const std::string& quantity, double value, double held_to, double measured,
                     const std::string& unit);
   /// A value within `tolerance`·|reference| of its reference.
@@ -65,7 +67,9 @@ class Page {
 
  private:
   void figure(nlohmann::json entry, double error, double asserted);
+  void hold_to_the_preset(const std::string& quantity, double relative_error) const;
   nlohmann::json page_;
+  double expected_ = 0;  ///< –, error that the runs so far were expected to have
 };
 
 }  // namespace quicksand::test

@@ -6,6 +6,8 @@
 #include <random>
 #include <vector>
 
+#include "engine/grid/cell_kernel.hpp"
+
 namespace quicksand {
 namespace {
 
@@ -143,45 +145,84 @@ TEST(Stencil, AffineWeightsFindTheSlopeOfALinearField) {
   expect_affine<3, LinearHat>();
 }
 
-/// Kernels found lane by lane are those found one by one: anywhere, on faces, on the edge and beyond it.
+/// What lane `k` of a window leaves on the faces of component d, with the derivatives along each axis.
+template <int d, int D, class Shape>
+std::map<int, std::array<double, D + 1>> on_faces(const CellWindow<D>& window,
+                                                  const CellKernel<D, Shape>& kernel, double inverse_h,
+                                                  int k) {
+  std::map<int, std::array<double, D + 1>> left;
+  window.faces(d, [&](int node, int face, double sign) {
+    const int along[3] = {node % 4, node / 4 % 3, node / 12};
+    auto& sum = left[face];
+    for (int b = 0; b <= D; ++b) {
+      double product = sign;
+      for (int a = 0; a < D; ++a) {
+        const int axis = axis_of(d, a);
+        const auto pick = [&](const auto& nodes) {
+          return axis == b ? nodes.dw[along[a]][k] * inverse_h : nodes.w[along[a]][k];
+        };
+        product *= a == 0 ? pick(kernel.face[axis]) : pick(kernel.center[axis]);
+      }
+      sum[b] += product;
+    }
+  });
+  return left;
+}
+
+/// Kernels of eight points of a cell are those found one by one: anywhere in it, on its edges and beyond.
+template <int D, class Shape>
+void expect_lanes_agree(const Walls<D>& walls) {
+  const Grid<D> grid = some_grid<D>();
+  std::mt19937 random(2);
+  std::uniform_real_distribution<double> part(0, 1);
+  at_random_places(grid, 60, [&](const Vec<D>& somewhere) {
+    const Cell<D> cell = grid.cell_of(somewhere);
+    std::array<BatchLanes, D> x;
+    std::array<Vec<D>, kBatch> places;
+    for (int k = 0; k < kBatch; ++k)
+      for (int d = 0; d < D; ++d) {
+        const bool last = cell[d] == grid.cells[d] - 1;
+        const double xi = k == 0 ? 1e-9 : k == 1 ? 0.5 : k == 2 && last ? 1.3 : part(random);
+        x[d][k] = places[k][d] = grid.origin[d] + (cell[d] + xi) * grid.h;
+      }
+    CellKernel<D, Shape> kernel;
+    kernel.find(grid, cell, x);
+    const CellWindow<D> window(grid, walls, grid.index(cell));
+    for (int k = 0; k < kBatch; ++k) {
+      const PointKernel<D, Shape> alone(grid, places[k]);
+      ASSERT_EQ(grid.index(cell), alone.home());
+      for_components<D>([&](auto d) {
+        auto left = on_faces<d, D>(window, kernel, grid.inverse_h, k);
+        for_faces(grid, walls, alone, d, [&](int f, double w, double sign, const Vec<D>& g) {
+          left[f][D] -= sign * w;
+          for (int a = 0; a < D; ++a) left[f][a] -= sign * g[a];
+        });
+        for (const auto& [face, rest] : left)
+          for (const double value : rest) EXPECT_NEAR(value, 0, 1e-13) << face;
+      });
+      std::map<int, double> centers;
+      window.centers([&](int node, int cell_index) {
+        double w = 1;
+        for (int a = 0, rest = node; a < D; ++a, rest /= 3) w *= kernel.center[a].w[rest % 3][k];
+        centers[cell_index] += w;
+      });
+      for_centers(grid, walls, alone, [&](int c, double w) { centers[c] -= w; });
+      for (const auto& [c, rest] : centers) EXPECT_NEAR(rest, 0, 1e-14) << c;
+    }
+  });
+}
+
 template <int D, class Shape>
 void expect_lanes_agree() {
-  constexpr int n = KernelBatch<D, Shape>::size;
   const Grid<D> grid = some_grid<D>();
-  const Walls<D> open(grid);
-  std::vector<Vec<D>> places;
-  at_random_places(grid, 10 * n - 3, [&](const Vec<D>& x) { places.push_back(x); });
-  const double top = grid.origin[0] + grid.cells[0] * grid.h;
-  for (const double edge :
-       {grid.origin[0], grid.origin[0] + 2 * grid.h, top, grid.origin[0] - 0.1, top + 0.1}) {
-    places.push_back(places[0]);
-    places.back()[0] = edge;
-  }
-  for (std::size_t begin = 0; begin < places.size(); begin += n) {
-    const int count = static_cast<int>(std::min<std::size_t>(n, places.size() - begin));
-    std::array<Lanes<n>, D> x{};
-    for (int k = 0; k < count; ++k)
-      for (int d = 0; d < D; ++d) x[d][k] = places[begin + k][d];
-    KernelBatch<D, Shape> batch;
-    batch.find(grid, x);
-    for (int k = 0; k < count; ++k) {
-      const PointKernel<D, Shape> alone(grid, places[begin + k]);
-      ASSERT_EQ(batch[k].home(), alone.home());
-      std::map<int, std::pair<double, Vec<D>>> one, other;
-      for (int d = 0; d < D; ++d) {
-        one.clear(), other.clear();
-        for_faces(grid, open, alone, d, [&](int f, double w, double, const Vec<D>& g) { one[f] = {w, g}; });
-        for_faces(grid, open, batch[k], d, [&](int f, double w, double, const Vec<D>& g) {
-          other[f] = {w, g};
-        });
-        EXPECT_EQ(one, other);
-      }
-      std::map<int, double> centers, lanes;
-      for_centers(grid, open, alone, [&](int c, double w) { centers[c] = w; });
-      for_centers(grid, open, batch[k], [&](int c, double w) { lanes[c] = w; });
-      EXPECT_EQ(centers, lanes);
-    }
-  }
+  Walls<D> walls(grid);
+  expect_lanes_agree<D, Shape>(walls);
+  for (int d = 0; d < D; ++d)
+    for_each_cell(grid, [&](int i, const Cell<D>& c) {
+      if (c[d] == 0 || (c[d] == 3 && c[1 - d % 2] > 2)) walls.close(d, i, d == 0);
+    });
+  walls.rebuild(grid);
+  expect_lanes_agree<D, Shape>(walls);
 }
 
 TEST(Stencil, KernelsInLanesAreThoseOfPointsAlone) {

@@ -1,7 +1,6 @@
 #include "engine/points/blocks.hpp"
 
 #include <gtest/gtest.h>
-#include <tbb/task_arena.h>
 
 #include <map>
 #include <mutex>
@@ -123,7 +122,7 @@ void expect_colors_apart(const Grid<D>& grid) {
     });
   // by_color takes one colour after the other: a colour never comes back once left.
   std::vector<int> order;
-  tbb::task_arena(1).execute([&] { blocks.by_color([&](int b) { order.push_back(color_of(b)); }); });
+  with_threads(1, [&] { blocks.by_color([&](int b) { order.push_back(color_of(b)); }); });
   EXPECT_EQ(static_cast<int>(order.size()), blocks.count());
   EXPECT_TRUE(std::is_sorted(order.begin(), order.end()));
 }
@@ -155,7 +154,7 @@ TEST(Blocks, SumIsTakenInTheOrderOfTheBlocks) {
   double serial = 0;
   for (int b = 0; b < blocks.count(); ++b) serial += part(b);
   for (const int threads : {1, 2, 4})
-    tbb::task_arena(threads).execute([&] { EXPECT_EQ(blocks.sum<double>(part), serial); });
+    with_threads(threads, [&] { EXPECT_EQ(blocks.sum<double>(part), serial); });
 }
 
 TEST(Blocks, GroupIsAStableSort) {
@@ -167,20 +166,28 @@ TEST(Blocks, GroupIsAStableSort) {
   BlockList list;
   Blocks<2> blocks = blocks_at<2>(grid, places, list);
   blocks.group(list);
-  ASSERT_EQ(static_cast<int>(list.begin.size()), blocks.count() + 1);
+  ASSERT_EQ(static_cast<int>(list.begin.size()), blocks.count() * Blocks<2>::kCells + 1);
   EXPECT_EQ(list.begin.front(), 0u);
   EXPECT_EQ(list.begin.back(), places.size());
   std::vector<char> seen(places.size(), 0);
-  for (int b = 0; b < blocks.count(); ++b)
-    for (auto i = list.begin[b]; i < list.begin[b + 1]; ++i) {
-      const auto p = list.order[i];
-      EXPECT_EQ(blocks.number_of(blocks.block_of(grid.cell_of(places[p]))), b);
-      if (i > list.begin[b]) {
-        EXPECT_LT(list.order[i - 1], p);
+  for (int b = 0; b < blocks.count(); ++b) {
+    PointRange rest = blocks.points(list, b);
+    blocks.cells_with_points(list, b, [&](const Cell<2>& c, const PointRange& points) {
+      EXPECT_EQ(points.begin, rest.begin);  // cell after cell
+      rest.begin = points.end;
+      EXPECT_EQ(blocks.number_of(blocks.block_of(c)), b);
+      for (auto i = points.begin; i < points.end; ++i) {
+        const auto p = list.order[i];
+        EXPECT_EQ(grid.cell_of(places[p]), c);
+        if (i > points.begin) {
+          EXPECT_LT(list.order[i - 1], p);
+        }
+        EXPECT_FALSE(seen[p]);
+        seen[p] = 1;
       }
-      EXPECT_FALSE(seen[p]);
-      seen[p] = 1;
-    }
+    });
+    EXPECT_EQ(rest.begin, rest.end);
+  }
   blocks.locate(grid, {}, list);
   blocks.group(list);  // an empty set leaves nothing behind
   EXPECT_TRUE(list.order.empty());

@@ -2,10 +2,10 @@
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
-#include <tbb/task_arena.h>
 
 #include <cstring>
 
+#include "engine/threads/parallel.hpp"
 #include "tests/engine/step/motion.hpp"
 
 namespace quicksand {
@@ -20,12 +20,12 @@ bool same_bits(const T& a, const T& b) {
 
 template <int D>
 State<D> advanced(const Scene& scene, int threads, int steps, double dt) {
-  tbb::task_arena arena(threads);
-  return arena.execute([&] {
-    State<D> s = make_state<D>(scene);
+  State<D> s;
+  with_threads(threads, [&] {
+    s = make_state<D>(scene);
     advance_times(s, steps, dt);
-    return s;
   });
+  return s;
 }
 
 template <int D>

@@ -83,7 +83,8 @@ double inflow(const State<D>& s, int i) {
   for (int d = 0; d < D; ++d)
     for (int side : {0, 1}) {
       const int face = i + side * s.grid.stride[d];
-      if (!s.water_walls.closed(d, face)) sum += (1 - 2 * side) * s.flow[d][face].flux() * s.grid.inverse_h;
+      if (!s.water_walls.closed(d, face))
+        sum += (1 - 2 * side) * s.flow[d][face].flux(s.speeds[d][face]) * s.grid.inverse_h;
     }
   return sum;
 }

@@ -1,11 +1,10 @@
 #pragma once
 // Loops over long vectors: in parallel where that pays, with sums in a fixed order.
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <vector>
+
+#include "engine/threads/parallel.hpp"
 
 namespace quicksand {
 
@@ -21,7 +20,9 @@ void for_chunks(std::size_t n, F&& f) {
   if (chunks < 3)
     for (std::size_t c = 0; c < chunks; ++c) one(c);
   else
-    tbb::parallel_for(std::size_t{0}, chunks, one);
+    parallel_parts(chunks, 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t c = begin; c < end; ++c) one(c);
+    });
 }
 
 /// Combines f(begin, end) of all chunks, in their order.

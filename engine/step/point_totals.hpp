@@ -1,0 +1,68 @@
+#pragma once
+// What a step counts over all points while it moves them.
+
+#include <limits>
+
+#include "engine/step/batches.hpp"
+#include "engine/step/state.hpp"
+
+namespace quicksand {
+
+/// Of one block; summed over blocks in their order.
+template <int D>
+struct Totals {
+  Vec<D> momentum{};
+  Vec<D> let_go{};  ///< N·s, what the surface did not give to drops that fall freely
+  double mass = 0, kinetic = 0, max_speed2 = 0, max_soil_speed2 = 0;
+  double soil_limit = std::numeric_limits<double>::infinity();       ///< s
+  double fast_wave_limit = std::numeric_limits<double>::infinity();  ///< s
+  Interventions interventions;
+  bool finite = true;
+  Totals& operator+=(const Totals& o) {
+    for (int d = 0; d < D; ++d) momentum[d] += o.momentum[d], let_go[d] += o.let_go[d];
+    mass += o.mass;
+    kinetic += o.kinetic;
+    max_speed2 = std::max(max_speed2, o.max_speed2);
+    max_soil_speed2 = std::max(max_soil_speed2, o.max_soil_speed2);
+    soil_limit = std::min(soil_limit, o.soil_limit);
+    fast_wave_limit = std::min(fast_wave_limit, o.fast_wave_limit);
+    interventions += o.interventions;
+    finite = finite && o.finite;
+    return *this;
+  }
+};
+
+/// Mass and motion of the points of one phase in a block, lane by lane.
+template <int D>
+class MotionTotals {
+ public:
+  /// Of a batch; `also` is any number that must be finite too.
+  QUICKSAND_INLINE void add(const PointBatch<D>& batch, const std::vector<double>& mass,
+                            const std::array<BatchLanes, D>& v, const BatchLanes& also) {
+    BatchLanes m{}, speed2{};
+    for (int k = 0; k < batch.count; ++k) m[k] = mass[batch.point[k]];
+    for (int d = 0; d < D; ++d) {
+      momentum_[d] += m * v[d];
+      speed2 += v[d] * v[d];
+    }
+    mass_ += m;
+    kinetic_ += 0.5 * m * speed2;
+    max_speed2_ = where(speed2 > max_speed2_, speed2, max_speed2_);
+    finite_ += 0.0 * (speed2 + also);  // not a number is never lost
+  }
+  void add_to(Totals<D>& totals) const {
+    for (int k = 0; k < kBatch; ++k) {
+      for (int d = 0; d < D; ++d) totals.momentum[d] += momentum_[d][k];
+      totals.mass += mass_[k];
+      totals.kinetic += kinetic_[k];
+      totals.max_speed2 = std::max(totals.max_speed2, max_speed2_[k]);
+      totals.finite = totals.finite && finite_[k] == 0;
+    }
+  }
+
+ private:
+  std::array<BatchLanes, D> momentum_{};
+  BatchLanes mass_{}, kinetic_{}, max_speed2_{}, finite_{};
+};
+
+}  // namespace quicksand

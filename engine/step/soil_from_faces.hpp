@@ -1,0 +1,115 @@
+#pragma once
+// Faces → grains: velocity, strain and stress, porosity, position.
+
+#include "engine/step/advect.hpp"
+#include "engine/step/point_totals.hpp"
+
+namespace quicksand {
+
+/// Velocities and velocity gradients of a batch of soil points after the step.
+template <int D>
+struct SoilMotion {
+  std::array<BatchLanes, D> v, way;  ///< m/s, m
+  Gradient<D, BatchLanes> l;         ///< 1/s
+};
+
+template <class S, int D>
+QUICKSAND_INLINE SoilMotion<D> soil_motion(State<D>& s, const CellWindow<D>& window,
+                                           const CellKernel<D, typename S::Shape>& kernel,
+                                           const PointBatch<D>& batch, double dt, double pic) {
+  SoilMotion<D> motion;
+  motion.v = batch.get(s.soil.v);
+  for_velocities<kSoilSpeeds>(
+      s, window, [&](auto d, const auto& grid) __attribute__((always_inline)) {
+        const BatchLanes before = old_value<d, D>(kernel, grid);
+        const WindowSum<D> after = new_sum<d, D>(
+            kernel, grid,
+            [](const auto& nodes, int i) __attribute__((always_inline)) { return nodes.dw[i]; });
+        motion.v[d] = mix(motion.v[d], before, after.value, pic);
+        motion.way[d] = dt * after.value;
+        for (int j = 0; j < D; ++j) motion.l[d][axis_of(d, j)] = s.grid.inverse_h * after.slope[j];
+        if constexpr (S::affine) put_gradient<typename S::Shape, d, D>(s.grid, batch, kernel, grid, s.soil);
+      });
+  return motion;
+}
+
+/// Dˢn/Dt = (1−n) ∇·vˢ, integrated: the grains' volume stays. A step that turns the soil has ∇·vˢ < 0, as
+/// its chords lead inward of their arcs; the determinant knows. `held` counts those kept within bounds.
+template <int D>
+QUICKSAND_INLINE BatchLanes strained_porosity(const BatchLanes& before, const BatchLanes& stretch, int count,
+                                              long& held) {
+  const BatchLanes least = all_lanes<BatchLanes>(0.1);
+  const BatchLanes exact = 1.0 - (1.0 - before) / where(stretch > least, stretch, least);
+  const BatchLanes n =
+      clamped<BatchLanes>(exact, all_lanes<BatchLanes>(kMinRoom), all_lanes<BatchLanes>(kMaxPorosity));
+  const auto off = n != exact;
+  if (any_of(off, count))
+    for (int k = 0; k < count; ++k) held += off[k] != 0;
+  return n;
+}
+
+/// Stress and what else the law keeps, and the steps that the points allow.
+template <class S, int D>
+QUICKSAND_INLINE BatchLanes update_soil(State<D>& s, const PointBatch<D>& batch, bool confined,
+                                        const Gradient<D, BatchLanes>& l, double dt, const BatchLanes& hoop,
+                                        Totals<D>& totals) {
+  SoilPoints<D>& soil = s.soil;
+  std::array<const SoilMaterial*, kBatch> material;
+  material.fill(&s.constants.soils.front());
+  BatchLanes max_porosity = all_lanes<BatchLanes>(material[0]->max_porosity);
+  if (s.constants.soils.size() > 1)
+    for (int k = 0; k < kBatch; ++k) {
+      material[k] = &s.constants.soils[soil.soil[batch.point[k]]];
+      max_porosity[k] = material[k]->max_porosity;
+    }
+  const BatchLanes before = batch.get(soil.porosity);
+  const BatchLanes n = strained_porosity<D>(before, volume_ratio<D, BatchLanes>(l, dt) * (1.0 + dt * hoop),
+                                            batch.count, totals.interventions.clamped_values);
+  batch.put(n, soil.porosity);
+  SoilState<D, BatchLanes> old{batch.get(soil.stress), batch.get(soil.plastic_strain), {}};
+  if (!soil.preconsolidation.empty()) old.preconsolidation = batch.get(soil.preconsolidation);
+  SoilState<D, BatchLanes> now = old;
+  totals.interventions.clamped_values += update_states<D>(material, batch.count, now, before, l, dt, hoop);
+  const auto apart = n > max_porosity;  // grains that do not touch
+  if (any_of(apart, batch.count)) {
+    for (BatchLanes& component : now.stress) component = where(apart, BatchLanes{}, component);
+    now.plastic_strain = where(apart, old.plastic_strain, now.plastic_strain);
+    now.preconsolidation = where(apart, old.preconsolidation, now.preconsolidation);
+  }
+  batch.put(now.stress, soil.stress);
+  batch.put(now.plastic_strain, soil.plastic_strain);
+  if (!soil.preconsolidation.empty()) batch.put(now.preconsolidation, soil.preconsolidation);
+  // Next to the air no pressure resists, so that the frame's own wave is the bound. Grains that do not touch
+  // may touch again in the next step.
+  for (int k = 0; k < batch.count; ++k) {
+    const double touching = std::min(n[k], max_porosity[k]);
+    const double modulus = material[k]->template constrained_modulus<D>(lane_of(now, k), touching);
+    const StepLimit& limit = s.constants.step_limits[soil.soil[batch.point[k]]];
+    totals.soil_limit = std::min(
+        totals.soil_limit, confined ? limit.saturated(touching, modulus) : limit.dry(touching, modulus));
+    if (s.constants.explicit_pressure)
+      totals.fast_wave_limit = std::min(totals.fast_wave_limit, limit.fast_wave(touching, modulus));
+  }
+  return trace(now.stress);
+}
+
+template <class S, int D>
+void soil_from_faces(State<D>& s, const Cell<D>& cell, const PointBatch<D>& batch, double dt, double pic,
+                     Totals<D>& totals, MotionTotals<D>& motion_totals) {
+  const int home = s.grid.index(cell);
+  std::array<BatchLanes, D> x = batch.get(s.soil.x);
+  CellKernel<D, typename S::Shape> kernel;
+  kernel.find(s.grid, cell, x);
+  const SoilMotion<D> motion =
+      soil_motion<S, D>(s, CellWindow<D>(s.grid, s.soil_walls, home), kernel, batch, dt, pic);
+  BatchLanes hoop{};  // 1/s, v_r/r
+  if constexpr (S::axial) hoop = motion.way[0] / (dt * x[0]);
+  totals.interventions.clipped_points +=
+      move_batch<D>(s.grid, s.soil_walls, home, batch.count, x, motion.way);
+  batch.put(x, s.soil.x);
+  batch.put(motion.v, s.soil.v);
+  const BatchLanes stress = update_soil<S, D>(s, batch, s.cell[home].confined, motion.l, dt, hoop, totals);
+  motion_totals.add(batch, s.soil.mass, motion.v, stress);
+}
+
+}  // namespace quicksand
