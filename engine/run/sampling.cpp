@@ -39,6 +39,19 @@ Vec<D> velocity_at(const State<D>& s, const Walls<D>& walls, const Vec<D>& x, Ve
   return v;
 }
 
+/// Whether no kernel of the cell reaches air: it and its neighbours are wet, and theirs.
+template <int D>
+bool deep(const State<D>& s, int cell) {
+  if (!s.cell[cell].confined) return false;
+  for (int d = 0; d < D; ++d)
+    for (int side : {0, 1}) {
+      const int face = cell + side * s.grid.stride[d], other = cell + (2 * side - 1) * s.grid.stride[d];
+      if (s.water_walls.closed(d, face) || in_plate(s, d, face) || submerged(s, d, face)) continue;
+      if (!s.cell[other].confined) return false;
+    }
+  return true;
+}
+
 }  // namespace
 
 template <int D>
@@ -90,12 +103,22 @@ double porosity_at(const State<D>& s, const Vec<D>& x) {
 
 template <int D>
 double water_volume(const State<D>& s) {
-  return s.grid.cell_volume() * s.blocks.template sum<double>([&](int b) {
+  return s.blocks.template sum<double>([&](int b) {
     double v = 0;
     s.blocks.cells(s.grid, b, false, [&](int i, const Cell<D>&) {
-      if (!s.water_walls.blocked(i))
-        v += s.grid.cell_radius(i) * s.cell[i].n * std::clamp(0.5 + s.cell[i].depth, 0.0, 1.0);
+      if (s.water_walls.blocked(i)) return;
+      const double held = s.cell_sums[i].water, room = s.cell[i].n * s.volume.cell(i);
+      v += deep<D>(s, i) ? room : std::min(held, room);
     });
+    return v;
+  });
+}
+
+template <int D>
+double water_held(const State<D>& s) {
+  return s.blocks.template sum<double>([&](int b) {
+    double v = 0;
+    s.blocks.cells(s.grid, b, false, [&](int i, const Cell<D>&) { v += s.cell_sums[i].water; });
     return v;
   });
 }
@@ -130,5 +153,7 @@ template double porosity_at<2>(const State<2>&, const Vec<2>&);
 template double porosity_at<3>(const State<3>&, const Vec<3>&);
 template double water_volume<2>(const State<2>&);
 template double water_volume<3>(const State<3>&);
+template double water_held<2>(const State<2>&);
+template double water_held<3>(const State<3>&);
 
 }  // namespace quicksand
