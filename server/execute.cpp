@@ -4,18 +4,18 @@
 #include <unistd.h>
 
 #include <array>
-#include <cerrno>
 #include <filesystem>
 #include <fstream>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
-#include <system_error>
 #include <thread>
 
 #include "api/case_json.hpp"
+#include "engine/results/disk_space.hpp"
 #include "engine/results/result_file.hpp"
+#include "engine/run/engine_build.hpp"
 #include "engine/study/error_estimate.hpp"
 #include "server/files.hpp"
 #include "server/version.hpp"
@@ -70,10 +70,11 @@ Opened reopen(const std::string& folder, const Documents& documents, RunMonitor&
   for (const auto& path : checkpoint_files(folder)) try {
       StoredCheckpoint from = read_checkpoint(path);
       if (from.identity != run_identity(documents))
-        throw std::runtime_error("it is of another case or version of quicksand");
+        throw std::runtime_error("it is of another case or build of quicksand");
       auto file = std::make_unique<ResultFile>(folder, documents, &from);
       return {std::move(file), std::move(from)};
     } catch (const std::runtime_error& error) {
+      if (disk_refusal(error.what()) != DiskRefusal::none) throw;  // it is good, and its time will come
       monitor.log(path.filename().string() + " cannot be used: " + error.what());
     }
   return {};
@@ -81,11 +82,8 @@ Opened reopen(const std::string& folder, const Documents& documents, RunMonitor&
 
 /// Whether a run failed because of what a kill had left of its results.
 bool found_damage(const RunReport& report) {
-  if (report.status != RunStatus::failed || report.failure.code != "output") return false;
-  for (const int reason : {ENOSPC, EDQUOT, EFBIG, EIO})
-    if (report.failure.message.find(std::generic_category().message(reason)) != std::string::npos)
-      return false;
-  return true;
+  return report.status == RunStatus::failed && report.failure.code == "output" &&
+         disk_refusal(report.failure.message) == DiskRefusal::none;
 }
 
 /// Runs a valid scene; exceptions mean that its results could not be stored.
@@ -94,7 +92,8 @@ RunReport run_into(const std::string& folder, const std::string& case_text, cons
   const Plan plan = make_plan(scene);
   const Documents documents{
       {"case", case_text},       {"case_resolved", resolved_case(scene)}, {"plan", plan_json(plan)},
-      {"units", units_document}, {"engine_version", engine_version},      {"host", host_document()}};
+      {"units", units_document}, {"engine_version", engine_version},      {"engine_build", engine_build()},
+      {"host", host_document()}};
   // The history that its error is estimated from is kept in memory only: such a run starts again.
   const bool with_error = scene.numerics.error_estimate != ErrorEstimate::none;
   if (with_error && resume == Resume::if_possible) resume = Resume::never;
@@ -105,7 +104,7 @@ RunReport run_into(const std::string& folder, const std::string& case_text, cons
   if (resume != Resume::never) opened = reopen(folder, documents, monitor);
   if (!opened.file && resume == Resume::required)
     return failed("no_checkpoint",
-                  "the folder holds no checkpoint of this case and version; run it from its beginning");
+                  "the folder holds no checkpoint of this case and build; run it from its beginning");
   if (!opened.file) opened.file = std::make_unique<ResultFile>(folder, documents);
   options.resume = opened.from ? &opened.from->run : nullptr;
   std::error_code none;

@@ -14,7 +14,7 @@ struct Execution {
   std::vector<Fault> faults;  ///< not empty: nothing was run and nothing written
   RunReport report;
 };
-/// Whether to go on from the folder's newest checkpoint that is whole and of this case and version.
+/// Whether to go on from the folder's newest checkpoint that is whole and of this case and build.
 enum class Resume {
   never,
   if_possible,  ///< else from the beginning; the monitor's log says why

@@ -13,11 +13,12 @@
 namespace quicksand {
 namespace {
 
-/// Connections served at a time, besides those that long polls, event streams and data may hold.
+/// Connections served at a time, besides those that long polls, event streams, data and downloads may hold.
 constexpr Count connection_threads = 64;
 constexpr int first_port = 8080, last_port = 8179;
-/// s without a byte before a connection is given up.
-constexpr int read_timeout_s = 5, write_timeout_s = 5;
+/// s without a byte before a connection is given up. Who reads slowly holds a place of his own kind only, and
+/// may pause as long as nginx lets him (send_timeout).
+constexpr int read_timeout_s = 5, write_timeout_s = 35;
 
 /// Connections that may wait to be accepted.
 constexpr int backlog = 128;
@@ -102,8 +103,8 @@ HttpServer::HttpServer(Service& service) : service_(service) {
 void HttpServer::install_limits() {
   http_.set_keep_alive_max_count(1);  // an idle client must not hold a thread
   const Settings& s = service_.settings;
-  const auto threads =
-      static_cast<std::size_t>(connection_threads + s.max_waiters + s.max_streams + s.max_readers);
+  const auto threads = static_cast<std::size_t>(connection_threads + s.max_waiters + s.max_streams +
+                                                s.max_readers + s.max_downloads);
   http_.new_task_queue = [threads] { return new httplib::ThreadPool(threads); };
   http_.set_read_timeout(read_timeout_s);
   http_.set_write_timeout(write_timeout_s);

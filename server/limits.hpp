@@ -1,7 +1,6 @@
 #pragma once
 // What a case and a run may take; each refusal names the limit, the value and the setting.
 
-#include <chrono>
 #include <optional>
 #include <string>
 
@@ -33,7 +32,7 @@ std::string disk_shortage(const Settings& settings, const StateFolder& folder, d
 double folder_bytes(const std::filesystem::path& folder);
 
 /// Why a run has to end that has computed for so long; empty when it need not.
-std::optional<Failure> out_of_time(const Settings& settings, std::chrono::steady_clock::duration wall);
+std::optional<Failure> out_of_time(const Settings& settings, double seconds);
 
 /// Why runs have to end while the process takes so much memory; empty when they need not.
 std::optional<Failure> out_of_memory(const Settings& settings, double resident_bytes);

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <iostream>
 
+#include "engine/run/engine_build.hpp"
 #include "server/commands.hpp"
 #include "server/version.hpp"
 
@@ -180,7 +181,8 @@ void add_remote_commands(CLI::App& app, CommandLine& line) {
 int main(int argc, char** argv) {
   CLI::App app{"quicksand: material point simulation of saturated ground and free water"};
   quicksand::CommandLine line;
-  app.set_version_flag("--version", std::string("quicksand ") + quicksand::engine_version);
+  app.set_version_flag("--version", std::string("quicksand ") + quicksand::engine_version +
+                                        ", engine build " + quicksand::engine_build());
   app.require_subcommand(1);
   quicksand::add_local_commands(app, line);
   quicksand::add_serve_command(app, line);

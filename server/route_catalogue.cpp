@@ -2,6 +2,7 @@
 
 #include "api/case_json.hpp"
 #include "api/openapi.hpp"
+#include "engine/run/engine_build.hpp"
 #include "server/http_problem.hpp"
 #include "server/limits.hpp"
 #include "server/route_handlers.hpp"
@@ -39,6 +40,7 @@ void get_service_info(Service& service, const Call&, httplib::Response& response
         limits[setting.name] = service.settings.*(*count);
   response.set_content(dump({{"name", "quicksand"},
                              {"version", engine_version},
+                             {"engine_build", engine_build()},
                              {"case_formats", {"quicksand.case/1"}},
                              {"started", rfc3339(service.started)},
                              {"workers", service.settings.workers},
@@ -62,7 +64,7 @@ void get_readyz(Service& service, const Call&, httplib::Response& response) {
     spdlog::error("not ready: {}", error.what());
     fail(503, "the store cannot be written");
   }
-  const std::string shortage = disk_shortage(service.settings, service.folder, service.store.results_bytes());
+  const std::string shortage = service.runner.shortage();
   if (!shortage.empty()) fail(503, shortage);
   response.set_content(R"({"status":"ready"})", "application/json");
 }

@@ -13,6 +13,7 @@ namespace {
 
 /// Bytes held in memory per download.
 constexpr std::size_t chunk_bytes = 1 << 16;
+constexpr int full_retry_s = 5;  ///< s, `Retry-After` when all downloads are taken
 
 const char* media_type(const std::string& name) {
   if (name.ends_with(".json")) return "application/json";
@@ -22,19 +23,26 @@ const char* media_type(const std::string& name) {
 }
 
 /// Sends `count` bytes from `first` on, in constant memory.
-void stream(std::shared_ptr<const ReadOnlyFile> file, std::size_t first, std::size_t count, const char* type,
-            httplib::Response& response) {
+void stream(Service& service, const Call& call, std::shared_ptr<const ReadOnlyFile> file, std::size_t first,
+            std::size_t count, const char* type, httplib::Response& response) {
   if (count == 0) {  // the library cannot stream nothing
     response.set_content("", type);
     return;
   }
-  response.set_content_provider(count, type,
-                                [file, first, buffer = std::make_shared<std::vector<char>>(chunk_bytes)](
-                                    std::size_t offset, std::size_t length, httplib::DataSink& sink) {
-                                  const std::size_t got = file->read(
-                                      buffer->data(), std::min(length, chunk_bytes), first + offset);
-                                  return got > 0 && sink.write(buffer->data(), got);
-                                });
+  auto place = call.request.method == "HEAD" ? nullptr : service.downloads.take();
+  if (!place && call.request.method != "HEAD")
+    throw ProblemError{{503,
+                        "too many downloads: " + named_limit(service.settings, &Settings::max_downloads),
+                        {},
+                        {},
+                        full_retry_s}};
+  response.set_content_provider(
+      count, type,
+      [file, first, place = std::move(place), buffer = std::make_shared<std::vector<char>>(chunk_bytes)](
+          std::size_t offset, std::size_t length, httplib::DataSink& sink) {
+        const std::size_t got = file->read(buffer->data(), std::min(length, chunk_bytes), first + offset);
+        return got > 0 && sink.write(buffer->data(), got);
+      });
 }
 
 StoredResult result_of(Service& service, const Call& call) {
@@ -65,7 +73,7 @@ void get_run_log(Service& service, const Call& call, httplib::Response& response
   constexpr const char* type = "text/plain; charset=utf-8";
   if (!std::filesystem::exists(path)) return response.set_content("", type);
   const auto file = std::make_shared<const ReadOnlyFile>(path);
-  stream(file, 0, file->size(), type, response);
+  stream(service, call, file, 0, file->size(), type, response);
 }
 
 void get_results(Service& service, const Call& call, httplib::Response& response) {
@@ -92,12 +100,12 @@ void get_result_file(Service& service, const Call& call, httplib::Response& resp
   const auto file = std::make_shared<const ReadOnlyFile>(path);
   if (range.kind == RangeAnswer::Kind::whole) {
     response.status = 200;
-    return stream(file, 0, result.bytes, media_type(result.name), response);
+    return stream(service, call, file, 0, result.bytes, media_type(result.name), response);
   }
   response.status = 206;
   response.set_header("Content-Range", "bytes " + std::to_string(range.first) + "-" +
                                            std::to_string(range.last) + "/" + std::to_string(result.bytes));
-  stream(file, range.first, range.last - range.first + 1, media_type(result.name), response);
+  stream(service, call, file, range.first, range.last - range.first + 1, media_type(result.name), response);
 }
 
 }  // namespace quicksand

@@ -48,7 +48,7 @@ PlannedCase plan_case(const Settings& settings, const Calibration& machine, cons
 }
 
 void refuse_on_a_full_disk(Service& service) {
-  const std::string shortage = disk_shortage(service.settings, service.folder, service.store.results_bytes());
+  const std::string shortage = service.runner.shortage();
   if (!shortage.empty()) fail(507, shortage);
 }
 

@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "engine/results/checkpoint_file.hpp"
 #include "engine/results/result_file.hpp"
 #include "server/sha256.hpp"
 
@@ -18,6 +19,11 @@ void remove_results(const std::filesystem::path& run_folder) {
   remove_result_files(run_folder.string());
   for (const std::string name : {"run.json", "tradeoff.csv", "tradeoff.svg", "tradeoff.png"})
     for (const char* ending : {"", ".part"}) std::filesystem::remove(run_folder / (name + ending));
+}
+
+void keep_unfinished_results(const std::filesystem::path& run_folder) {
+  remove_checkpoints(run_folder);
+  finish_result_files(run_folder.string());
 }
 
 std::vector<StoredResult> collect_results(const std::filesystem::path& run_folder) {

@@ -12,9 +12,8 @@ std::filesystem::path run_log_file(const StateFolder& folder, const std::string&
 }
 
 StoreMonitor::StoreMonitor(const StoredRun& run, Store& store, const StateFolder& folder, ChangeBell& bell,
-                           Metrics& metrics, const std::atomic<bool>& cancel,
-                           const std::atomic<bool>& stopping)
-    : id_(run.id), store_(store), bell_(bell), metrics_(metrics), cancel_(cancel), stopping_(stopping) {
+                           Metrics& metrics, const RunSignals& signals)
+    : id_(run.id), store_(store), bell_(bell), metrics_(metrics), signals_(signals) {
   auto sink = std::make_shared<spdlog::sinks::basic_file_sink_mt>(run_log_file(folder, id_).string());
   log_ = std::make_shared<spdlog::logger>(id_, std::move(sink));
   log_->set_pattern("%Y-%m-%dT%H:%M:%S.%eZ run=%n %v", spdlog::pattern_time_type::utc);
@@ -24,6 +23,7 @@ StoreMonitor::StoreMonitor(const StoredRun& run, Store& store, const StateFolder
 void StoreMonitor::progress(const Progress& now) {
   metrics_.stepped(now.step - last_.step);
   last_ = now;
+  signals_.computed_s = now.wall_seconds;
   unwritten_ = true;
   const auto time = std::chrono::steady_clock::now();
   if (time < next_write_) return;

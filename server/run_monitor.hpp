@@ -17,21 +17,28 @@ namespace quicksand {
 /// `<runs>/<id>/run.log`: what happened in a run, every line with the run's id.
 std::filesystem::path run_log_file(const StateFolder& folder, const std::string& id);
 
+/// What others ask of a run and what they watch of it.
+struct RunSignals {
+  const std::atomic<bool>& cancel;    ///< ends it within one step
+  const std::atomic<bool>& suspend;   ///< ends it so that it can go on from there
+  const std::atomic<bool>& stopping;  ///< likewise
+  std::atomic<double>& computed_s;    ///< wall time, before interruptions included
+};
+
 /// Carries a run's progress into the store, its words into its log and cancellation into the run.
 class StoreMonitor final : public RunMonitor {
  public:
   /// Progress is written at most this often, whatever the length of a step.
   static constexpr std::chrono::milliseconds progress_interval{500};
 
-  /// `cancel` ends the run within one step, `stopping` suspends it. Opens the log; throws spdlog::spdlog_ex
-  /// when the disk refuses.
+  /// Opens the log; throws spdlog::spdlog_ex when the disk refuses.
   StoreMonitor(const StoredRun& run, Store& store, const StateFolder& folder, ChangeBell& bell,
-               Metrics& metrics, const std::atomic<bool>& cancel, const std::atomic<bool>& stopping);
+               Metrics& metrics, const RunSignals& signals);
 
   void progress(const Progress& now) override;
   void log(const std::string& line) override;
-  bool cancelled() override { return cancel_; }
-  bool suspended() override { return stopping_; }
+  bool cancelled() override { return signals_.cancel; }
+  bool suspended() override { return signals_.suspend || signals_.stopping; }
   /// Writes the last progress, which the throttle may have held back.
   void flush();
 
@@ -42,7 +49,7 @@ class StoreMonitor final : public RunMonitor {
   Store& store_;
   ChangeBell& bell_;
   Metrics& metrics_;
-  const std::atomic<bool>&cancel_, &stopping_;
+  RunSignals signals_;
   std::shared_ptr<spdlog::logger> log_;
   Progress last_;
   bool unwritten_ = false;

@@ -1,13 +1,12 @@
 #include "server/runner.hpp"
 
+#include <pthread.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
-#include <array>
-#include <cerrno>
-#include <system_error>
 
 #include "engine/results/checkpoint_file.hpp"
+#include "engine/results/disk_space.hpp"
 #include "server/calibration_file.hpp"
 #include "server/execute.hpp"
 #include "server/limits.hpp"
@@ -19,6 +18,8 @@
 namespace quicksand {
 namespace {
 
+/// By which `top` and tests/faults/load.py tell what computes from what serves.
+constexpr const char* run_thread_name = "quicksand-run";
 /// Before a worker tries again after the store refused.
 constexpr std::chrono::seconds store_retry{1};
 
@@ -28,10 +29,16 @@ std::string one_line(const std::vector<Fault>& faults) {
   return text;
 }
 
-bool is_disk_full(const std::string& message) {
-  for (const int reason : {ENOSPC, EDQUOT})
-    if (message.find(std::generic_category().message(reason)) != std::string::npos) return true;
-  return false;
+/// Why a run's files could not be written; `words` are the disk's.
+Failure not_written(const std::string& message, const std::string& words) {
+  const DiskRefusal refusal = disk_refusal(words);
+  const bool full = refusal == DiskRefusal::full, read_only = refusal == DiskRefusal::read_only;
+  return {full ? "disk_full" : read_only ? "read_only" : "output", message, 0, {}};
+}
+
+/// Passes by itself: the run waits for it.
+bool is_lack_of_room(const Failure& failure) {
+  return failure.code == "disk_full" || failure.code == "read_only";
 }
 
 RunState end_state(RunStatus status) {
@@ -40,7 +47,8 @@ RunState end_state(RunStatus status) {
       return RunState::succeeded;
     case RunStatus::canceled:
       return RunState::canceled;
-    case RunStatus::suspended:  // queued again
+    case RunStatus::suspended:
+      return RunState::queued;
     case RunStatus::failed:
       break;
   }
@@ -79,7 +87,9 @@ std::optional<StoredRun> Runner::cancel(const std::string& id) {
     run = store_.request_cancel(id);
     const auto active = active_.find(id);
     if (active != active_.end()) active->second->cancel = true;
+    if (run && run->state == RunState::canceled && begun_.erase(id) > 0) left_over_.insert(id);
   }
+  wake_.notify_all();
   bell_.ring();
   return run;
 }
@@ -120,11 +130,12 @@ std::shared_ptr<Runner::Active> Runner::take_next(bool short_runs_only) {
         auto active = std::make_shared<Active>();
         active->run = std::move(*next);
         active_[active->run.id] = active;
+        begun_.erase(active->run.id);
         return active;
       }
       wake_.wait(lock);
     } catch (const std::exception& error) {
-      spdlog::error("the queue cannot be read: {}", error.what());
+      tell_of_room(std::string("the store refuses: ") + error.what());
       wake_.wait_for(lock, store_retry);
     }
   }
@@ -132,6 +143,7 @@ std::shared_ptr<Runner::Active> Runner::take_next(bool short_runs_only) {
 }
 
 void Runner::work(bool short_runs_only) {
+  ::pthread_setname_np(::pthread_self(), run_thread_name);  // inherited by the threads of its runs
   while (const auto active = take_next(short_runs_only)) {
     bell_.ring();
     execute_one(*active);
@@ -153,22 +165,20 @@ void Runner::execute_one(Active& active) {
   End end;
   try {
     end = compute(active);
-  } catch (const std::filesystem::filesystem_error& error) {  // its text holds paths of this machine
-    end.failure = Failure{"output", "cannot prepare the run's folder: " + error.code().message(), 0, {}};
-  } catch (const std::exception& error) {
+  } catch (const std::exception& error) {  // its text holds paths of this machine
     spdlog::error("run={} {}", run.id, error.what());
-    end.failure = Failure{"output", "cannot write in the run's folder", 0, {}};
+    end.failure = not_written("cannot write in the run's folder", error.what());
   }
-  if (end.failure && end.failure->code == "output" && is_disk_full(end.failure->message))
-    end.failure->code = "disk_full";
-  record(run, end);
+  if (end.failure && is_lack_of_room(*end.failure)) end.state = RunState::queued;
+  record(active, end);
 }
 
 Runner::End Runner::compute(Active& active) {
   const StoredRun& run = active.run;
   const auto folder = folder_.run(run.id);
   std::filesystem::create_directories(folder);
-  StoreMonitor monitor(run, store_, folder_, bell_, metrics_, active.cancel, stopping_);
+  StoreMonitor monitor(run, store_, folder_, bell_, metrics_,
+                       {active.cancel, active.suspend, stopping_, active.computed_s});
   RunOptions options;
   options.threads = run.kind == RunKind::tradeoff ? 1 : threads_for(settings_, run.cost);
   options.checkpoint_interval = static_cast<double>(settings_.checkpoint_s);
@@ -186,32 +196,56 @@ Runner::End Runner::compute(Active& active) {
   if (!done.faults.empty()) end.failure = Failure{"invalid_case", one_line(done.faults), 0, {}};
   const bool failed = done.faults.empty() && done.report.status == RunStatus::failed;
   if (failed) end.failure = done.report.failure;
-  if (done.report.status != RunStatus::suspended) remove_checkpoints(folder);
+  if (failed && end.failure->code == "output")
+    end.failure = not_written(done.report.failure.message, done.report.failure.message);
   const std::lock_guard lock(mutex_);
-  if (end.state == RunState::canceled && active.limit) {
-    end.state = RunState::failed;
+  if (active.limit && (end.state == RunState::canceled || end.state == RunState::queued)) {
+    if (end.state == RunState::canceled) end.state = RunState::failed;
     end.failure = active.limit;
     end.failure->time = done.report.sim_time;
   }
-  end.again = done.report.status == RunStatus::suspended;
-  monitor.log(end.again ? "the server stops; the run is queued again and goes on from here"
-                        : std::string("ended: ") + state_name(end.state) +
-                              (end.failure ? " " + end.failure->message : ""));
+  if (end.failure && is_lack_of_room(*end.failure))
+    monitor.log(end.failure->message + "; the run waits and goes on when this has passed");
+  else if (end.state == RunState::queued)
+    monitor.log("the server stops; the run is queued again and goes on from here");
+  else
+    monitor.log(std::string("ended: ") + state_name(end.state) +
+                (end.failure ? " " + end.failure->message : ""));
   return end;
 }
 
-void Runner::record(const StoredRun& run, const End& end) {
+/// A run that was canceled meanwhile, or has come to a limit, has ended.
+void Runner::queue_again(Active& active, const End& end) {
+  const std::lock_guard lock(mutex_);
+  const std::string& id = active.run.id;
+  if (active.cancel) {
+    const bool limited = active.limit && !is_lack_of_room(*active.limit);
+    store_.finish(id, limited ? RunState::failed : RunState::canceled, limited ? active.limit : std::nullopt,
+                  {});
+    left_over_.insert(id);
+    return;
+  }
+  store_.requeue(id, end.failure);
+  begun_.insert(id);
+  if (end.failure) pause_for(*end.failure);
+}
+
+/// The end of a run that wanted to write when the disk was full is recorded when there is room.
+void Runner::record(Active& active, End end) {
+  const std::string& id = active.run.id;
+  const auto folder = folder_.run(id);
   for (;;) try {
-      if (end.again)
-        store_.requeue(run.id);
-      else
-        store_.finish(run.id, end.state, end.failure, collect_results(folder_.run(run.id)));
-      const char* status = end.again ? "queued" : state_name(end.state);
-      spdlog::info("run={} ended status={}{}", run.id, status,
+      if (end.state == RunState::queued) {
+        queue_again(active, end);
+      } else {
+        keep_unfinished_results(folder);
+        store_.finish(id, end.state, end.failure, collect_results(folder));
+      }
+      spdlog::info("run={} ended status={}{}", id, state_name(end.state),
                    end.failure ? " code=" + end.failure->code : "");
       return;
-    } catch (const std::exception& error) {  // a full disk: the end is recorded when there is room
-      spdlog::error("run={} its end cannot be recorded yet: {}", run.id, error.what());
+    } catch (const std::exception& error) {
+      spdlog::error("run={} its end cannot be recorded yet: {}", id, error.what());
       if (stopping_) return;  // the next start finds it running and takes it up again
       std::unique_lock lock(mutex_);
       wake_.wait_for(lock, store_retry, [this] { return stopping_.load(); });

@@ -8,6 +8,7 @@
 #include <map>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 #include <thread>
 #include <vector>
@@ -32,6 +33,8 @@ class Runner {
   void wake();
   /// Cancels within one step of the run. Empty when there is no such run; harmless on ended ones.
   std::optional<StoredRun> cancel(const std::string& id);
+  /// Why nothing more may be written, the files of unfinished runs counted; empty when there is room.
+  std::string shortage();
 
   /// Interrupts all runs and queues them again, so that the next start computes them.
   void begin_stop();
@@ -43,13 +46,13 @@ class Runner {
   struct Active {
     StoredRun run;
     std::chrono::steady_clock::time_point begin = std::chrono::steady_clock::now();
-    std::atomic<bool> cancel{false};
-    std::optional<Failure> limit;  ///< guarded by mutex_; why it is ended, when a limit asks for it
+    std::atomic<bool> cancel{false}, suspend{false};
+    std::atomic<double> computed_s{0};  ///< wall time, before interruptions included
+    std::optional<Failure> limit;  ///< guarded by mutex_; why it is ended or suspended, when a limit asks
   };
   struct End {
-    RunState state = RunState::failed;
-    std::optional<Failure> failure;
-    bool again = false;  ///< interrupted by a stop: to be queued again
+    RunState state = RunState::failed;  ///< queued: it goes on later
+    std::optional<Failure> failure;     ///< of a queued one: what it waits for
   };
 
   // runner.cpp
@@ -58,7 +61,8 @@ class Runner {
   ClaimRules claim_rules(bool short_runs_only) const;
   void execute_one(Active& active);
   End compute(Active& active);
-  void record(const StoredRun& run, const End& end);
+  void record(Active& active, End end);
+  void queue_again(Active& active, const End& end);
 
   // runner_guard.cpp
   void recover();
@@ -67,8 +71,14 @@ class Runner {
   void enforce_limits();
   void expire_results();
   void end_for(Active& active, const Failure& failure);
-  std::string disk_shortage_now();
+
+  // runner_room.cpp
+  std::string shortage_now();
   bool has_room();
+  void tell_of_room(const std::string& shortage);
+  void suspend_without_room();
+  void pause_for(const Failure& failure);
+  void keep_what_canceled_runs_left(std::unique_lock<std::mutex>& lock);
 
   Store& store_;
   const StateFolder& folder_;
@@ -78,8 +88,13 @@ class Runner {
   std::mutex mutex_;  ///< guards active_, running_workers_ and the order of claim and cancel
   std::condition_variable wake_, stopped_;
   std::map<std::string, std::shared_ptr<Active>> active_;
+  std::set<std::string> begun_;      ///< queued runs that have files already
+  std::set<std::string> left_over_;  ///< of begun_, those that were canceled since
   int running_workers_ = 0;
   bool waits_for_room_ = false;
+  std::string lacked_;             ///< what the last run stopped for that found the disk full or read-only
+  std::chrono::seconds pause_{0};  ///< before the queue tries again after that
+  std::chrono::steady_clock::time_point try_again_{};
   std::atomic<bool> stopping_{false};
   std::vector<std::thread> workers_;
 };

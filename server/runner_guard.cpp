@@ -13,6 +13,10 @@
 namespace quicksand {
 namespace {
 
+double seconds(std::chrono::steady_clock::duration time) {
+  return std::chrono::duration<double>(time).count();
+}
+
 /// Between two looks at what the runs take.
 constexpr std::chrono::seconds guard_interval{1};
 constexpr Milliseconds day_ms = 24LL * 3600 * 1000;
@@ -39,6 +43,10 @@ void Runner::recover() {
   for (const auto& id : recovery.interrupted)
     spdlog::error("run={} interrupted too often without getting further, failed", id);
   for (const auto& id : recovery.canceled) spdlog::info("run={} canceled", id);
+  left_over_.insert(recovery.canceled.begin(), recovery.canceled.end());
+  left_over_.insert(recovery.interrupted.begin(), recovery.interrupted.end());
+  for (const StoredRun& run : store_.queued())
+    if (std::filesystem::exists(folder_.run(run.id))) begun_.insert(run.id);
   // Folders whose record is gone: the server died between deleting the record and its files.
   for (const auto& entry : std::filesystem::directory_iterator(folder_.runs()))
     if (!store_.find(entry.path().filename().string())) std::filesystem::remove_all(entry.path());
@@ -68,27 +76,12 @@ void Runner::guard() {
     try {
       enforce_limits();
       expire_results();
+      keep_what_canceled_runs_left(lock);
     } catch (const std::exception& error) {
       spdlog::error("guard: {}", error.what());
     }
     wake_.wait_for(lock, guard_interval);
   }
-}
-
-std::string Runner::disk_shortage_now() {
-  double bytes = store_.results_bytes();
-  for (const auto& [id, active] : active_) bytes += folder_bytes(folder_.run(id));
-  return disk_shortage(settings_, folder_, bytes);
-}
-
-/// Whether the queue may go on; the log tells when that changes. mutex_ is held.
-bool Runner::has_room() {
-  const std::string shortage = disk_shortage_now();
-  if (shortage.empty() == waits_for_room_) {
-    waits_for_room_ = !shortage.empty();
-    spdlog::warn("the queue {}{}", waits_for_room_ ? "waits: " : "goes on", shortage);
-  }
-  return !waits_for_room_;
 }
 
 /// The run ends within one step, failed. mutex_ is held.
@@ -104,9 +97,10 @@ void Runner::enforce_limits() {
   if (active_.empty()) return;
   const auto now = std::chrono::steady_clock::now();
   for (const auto& [id, active] : active_)
-    if (const auto failure = out_of_time(settings_, now - active->begin)) end_for(*active, *failure);
-  if (const std::string shortage = disk_shortage_now(); !shortage.empty())
-    for (const auto& [id, active] : active_) end_for(*active, {"disk_full", shortage, 0, {}});
+    if (const auto failure =
+            out_of_time(settings_, std::max(seconds(now - active->begin), active->computed_s.load())))
+      end_for(*active, *failure);
+  suspend_without_room();
   if (const auto failure = out_of_memory(settings_, resident_memory())) {  // the newest made it too much
     const auto newest = std::max_element(active_.begin(), active_.end(), [](const auto& a, const auto& b) {
       return a.second->begin < b.second->begin;

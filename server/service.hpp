@@ -34,7 +34,8 @@ struct Service {
   std::map<std::string, ShippedCase> cases;
   Calibration machine;
   Milliseconds started = utc_now();
-  Places waiters{settings.max_waiters}, streams{settings.max_streams}, readers{settings.max_readers};
+  Places waiters{settings.max_waiters}, streams{settings.max_streams}, readers{settings.max_readers},
+      downloads{settings.max_downloads};
   std::atomic<bool> stopping{false};
 };
 

@@ -22,7 +22,7 @@ struct Settings {
   Count short_workers = 1;
   Count short_run_s = 600;
   Count threads_per_run = 0;
-  Count points_per_thread = 2000;
+  Count points_per_thread = 5000;
 
   Count checkpoint_s = 60;
 
@@ -44,6 +44,7 @@ struct Settings {
   Count max_waiters = 16;
   Count max_streams = 16;
   Count max_readers = 4;
+  Count max_downloads = 32;
   Count max_data_bytes = 16 << 20;
 };
 

@@ -169,9 +169,11 @@ std::vector<StoredResult> Store::results(const std::string& id) {
 }
 
 void Store::check_writable() {
-  const std::lock_guard lock(mutex_);
-  SQLite::Transaction transaction(state_, SQLite::TransactionBehavior::IMMEDIATE);
-  state_.exec("UPDATE runs SET state = state WHERE sequence = 0");
+  const std::lock_guard lock(progress_mutex_);
+  SQLite::Transaction transaction(progress_, SQLite::TransactionBehavior::IMMEDIATE);
+  const int version = progress_.execAndGet("PRAGMA user_version").getInt();
+  progress_.exec("PRAGMA user_version = " + std::to_string(version));  // writes a page, the same as before
+  transaction.commit();
 }
 
 }  // namespace quicksand

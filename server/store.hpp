@@ -51,7 +51,7 @@ struct StoredRun {
   std::string case_sha256, engine_version;
   Milliseconds created = 0;
   std::optional<Milliseconds> started, finished;
-  std::optional<Failure> failure;
+  std::optional<Failure> failure;       ///< of a failed run; of a queued one, why it stopped and waits
   std::string progress;                 ///< JSON text; empty until the first step
   int retries = 0;                      ///< interruptions in a row, without a checkpoint between them
   long long revision = 0;               ///< rises with every change of this record
@@ -132,8 +132,10 @@ class Store {
   /// The run has ended; `results` are complete and will not change.
   void finish(const std::string& id, RunState end, const std::optional<Failure>& failure,
               const std::vector<StoredResult>& results);
-  /// running → queued, for a server that stops in good order.
-  void requeue(const std::string& id);
+  /// running → queued: it goes on later. `failure`: what it waits for; forgotten when it is claimed.
+  void requeue(const std::string& id, const std::optional<Failure>& failure = {});
+  /// Of a run that has ended.
+  void add_results(const std::string& id, const std::vector<StoredResult>& results);
   /// To be called once at start: what a killed server left running is queued again, but fails with code
   /// "interrupted" when that happens `most_fruitless` times in a row without `advanced(run)`: it may be what
   /// brings the server down. What was being canceled is canceled.

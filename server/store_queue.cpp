@@ -21,6 +21,25 @@ void set_failure(SQLite::Database& database, const std::string& id, const Failur
   set.exec();
 }
 
+/// What a queued run waited for no longer matters.
+void clear_failure(SQLite::Database& database, const std::string& id) {
+  SQLite::Statement clear(database, "UPDATE runs SET failure_code = NULL WHERE id = ?");
+  clear.bind(1, id);
+  clear.exec();
+}
+
+void insert_results(SQLite::Database& database, const std::string& id,
+                    const std::vector<StoredResult>& results) {
+  for (const StoredResult& result : results) {
+    SQLite::Statement insert(database, "INSERT OR REPLACE INTO results VALUES (?, ?, ?, ?)");
+    insert.bind(1, id);
+    insert.bind(2, result.name);
+    insert.bind(3, static_cast<int64_t>(result.bytes));
+    insert.bind(4, result.sha256);
+    insert.exec();
+  }
+}
+
 /// Moves a run to an end state and stamps it.
 void set_ended(SQLite::Database& database, const std::string& id, RunState end, Milliseconds now) {
   SQLite::Statement set(database,
@@ -53,7 +72,9 @@ std::optional<StoredRun> Store::claim_next(const ClaimRules& rules) {
   if (!next.executeStep() || next.getColumn(1).getDouble() > rules.free_memory) return {};
   const std::string id = next.getColumn(0).getString();
   SQLite::Statement set(
-      state_, "UPDATE runs SET state = 'running', started = ?, revision = revision + 1 WHERE id = ?");
+      state_,
+      "UPDATE runs SET state = 'running', started = ?, failure_code = NULL, revision = revision + 1 "
+      "WHERE id = ?");
   set.bind(1, static_cast<int64_t>(clock_()));
   set.bind(2, id);
   set.exec();
@@ -67,7 +88,10 @@ std::optional<StoredRun> Store::request_cancel(const std::string& id) {
   SQLite::Transaction transaction(state_, SQLite::TransactionBehavior::IMMEDIATE);
   const auto run = find_run(state_, id);
   if (!run) return {};
-  if (run->state == RunState::queued) set_ended(state_, id, RunState::canceled, clock_());
+  if (run->state == RunState::queued) {
+    clear_failure(state_, id);
+    set_ended(state_, id, RunState::canceled, clock_());
+  }
   if (run->state == RunState::running) {
     SQLite::Statement set(state_,
                           "UPDATE runs SET state = 'canceling', revision = revision + 1 WHERE id = ?");
@@ -94,22 +118,30 @@ void Store::finish(const std::string& id, RunState end, const std::optional<Fail
   SQLite::Transaction transaction(state_, SQLite::TransactionBehavior::IMMEDIATE);
   set_ended(state_, id, end, clock_());
   if (failure) set_failure(state_, id, *failure);
-  for (const StoredResult& result : results) {
-    SQLite::Statement insert(state_, "INSERT OR REPLACE INTO results VALUES (?, ?, ?, ?)");
-    insert.bind(1, id);
-    insert.bind(2, result.name);
-    insert.bind(3, static_cast<int64_t>(result.bytes));
-    insert.bind(4, result.sha256);
-    insert.exec();
-  }
+  insert_results(state_, id, results);
   transaction.commit();
 }
 
-void Store::requeue(const std::string& id) {
+void Store::add_results(const std::string& id, const std::vector<StoredResult>& results) {
   const std::lock_guard lock(mutex_);
   SQLite::Transaction transaction(state_, SQLite::TransactionBehavior::IMMEDIATE);
   const auto run = find_run(state_, id);
-  if (run && run->state == RunState::running) set_queued_again(state_, id, run->retries);
+  if (!run || is_active(run->state) || run->expired) return;
+  insert_results(state_, id, results);
+  SQLite::Statement set(state_, "UPDATE runs SET revision = revision + 1 WHERE id = ?");
+  set.bind(1, id);
+  set.exec();
+  transaction.commit();
+}
+
+void Store::requeue(const std::string& id, const std::optional<Failure>& failure) {
+  const std::lock_guard lock(mutex_);
+  SQLite::Transaction transaction(state_, SQLite::TransactionBehavior::IMMEDIATE);
+  const auto run = find_run(state_, id);
+  if (run && run->state == RunState::running) {
+    set_queued_again(state_, id, run->retries);
+    if (failure) set_failure(state_, id, *failure);
+  }
   transaction.commit();
 }
 

@@ -7,7 +7,7 @@
 #include <sys/mman.h>
 
 #include <cstddef>
-#include <cstdlib>
+#include <cstring>
 #include <new>
 #include <utility>
 #include <vector>
@@ -26,8 +26,9 @@ struct ZeroPages {
 
   T* allocate(std::size_t n) {
 #if defined(__SANITIZE_ADDRESS__)
-    void* at = std::calloc(n, sizeof(T));  // so that the sanitizer sees where an array ends
-    if (!at) throw std::bad_alloc();
+    // From the heap, so that the sanitizer sees where an array ends.
+    void* at = ::operator new(n * sizeof(T), std::align_val_t{alignof(T)});
+    std::memset(at, 0, n * sizeof(T));
 #else
     void* at = mmap(nullptr, n * sizeof(T), PROT_READ | PROT_WRITE,
                     MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
@@ -37,7 +38,7 @@ struct ZeroPages {
   }
   void deallocate(T* at, [[maybe_unused]] std::size_t n) {
 #if defined(__SANITIZE_ADDRESS__)
-    std::free(at);
+    ::operator delete(at, std::align_val_t{alignof(T)});
 #else
     munmap(at, n * sizeof(T));
 #endif

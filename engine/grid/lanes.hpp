@@ -3,6 +3,7 @@
 // vector types, element by element; where there are no such instructions it makes scalar code of it. What is
 // written for any T below works on a double and on lanes alike.
 
+#include <array>
 #include <cmath>
 #ifdef __AVX512F__
 #include <immintrin.h>
@@ -59,6 +60,26 @@ template <class T>
 QUICKSAND_INLINE T clamped(const T& v, const T& low, const T& high) {
   const T above = where(v > low, v, low);  // not a number becomes `low`
   return where(above < high, above, high);
+}
+
+/// out[k][i] = in[i][k].
+QUICKSAND_INLINE std::array<Lanes<8>, 8> transposed(const std::array<Lanes<8>, 8>& in) {
+  std::array<Lanes<8>, 8> pair, four, out;
+  for (int i = 0; i < 8; i += 2) {  // entries of two rows side by side: of even columns, of odd ones
+    pair[i] = __builtin_shufflevector(in[i], in[i + 1], 0, 8, 2, 10, 4, 12, 6, 14);
+    pair[i + 1] = __builtin_shufflevector(in[i], in[i + 1], 1, 9, 3, 11, 5, 13, 7, 15);
+  }
+  for (int i = 0; i < 8; i += 4)
+    for (int odd = 0; odd < 2; ++odd) {  // of four rows: columns odd and odd + 4, odd + 2 and odd + 6
+      four[i + odd] = __builtin_shufflevector(pair[i + odd], pair[i + 2 + odd], 0, 1, 8, 9, 4, 5, 12, 13);
+      four[i + 2 + odd] =
+          __builtin_shufflevector(pair[i + odd], pair[i + 2 + odd], 2, 3, 10, 11, 6, 7, 14, 15);
+    }
+  for (int k = 0; k < 4; ++k) {
+    out[k] = __builtin_shufflevector(four[k], four[k + 4], 0, 1, 2, 3, 8, 9, 10, 11);
+    out[k + 4] = __builtin_shufflevector(four[k], four[k + 4], 4, 5, 6, 7, 12, 13, 14, 15);
+  }
+  return out;
 }
 
 QUICKSAND_INLINE double square_root(double v) { return std::sqrt(v); }

@@ -117,8 +117,8 @@ template <int D>
 int CamClayLaw::begin(SoilState<D>& state) const {
   int held = 0;
   double p = -trace(state.stress) / 3;
-  if (p < kLeastPressure) {
-    p = kLeastPressure;
+  if (p < least_pressure) {
+    p = least_pressure;
     state.stress = {};
     for (int i = 0; i < 3; ++i) state.stress[i] = -p;
     held = 1;
@@ -134,8 +134,8 @@ int CamClayLaw::update(SoilState<D>& state, const Strain<D>& strain, double poro
   Stress<D> s = deviator(state.stress);
   const Strain<D> e = deviator(strain);
   double p = -trace(state.stress) / 3;
-  if (p < kLeastPressure) {  // grains that did not touch
-    p = kLeastPressure, s = {};
+  if (p < least_pressure) {  // grains that did not touch
+    p = least_pressure, s = {};
     held = 1;
   }
   double se = 0;
@@ -144,7 +144,7 @@ int CamClayLaw::update(SoilState<D>& state, const Strain<D>& strain, double poro
   const Step step{*this,
                   volume,
                   p,
-                  std::max(state.preconsolidation, kLeastPressure),
+                  std::max(state.preconsolidation, least_pressure),
                   -volume * trace(strain),
                   contracted(s),
                   se,
@@ -159,8 +159,8 @@ int CamClayLaw::update(SoilState<D>& state, const Strain<D>& strain, double poro
     state.plastic_strain += 2 * phi * q / (slope * slope);
   }
   for (std::size_t i = 0; i < s.size(); ++i) s[i] = t.factor * (s[i] + 2 * t.shear * e[i]);
-  if (t.p < kLeastPressure || t.pc < kLeastPressure) {
-    t.p = std::max(t.p, kLeastPressure);
+  if (t.p < least_pressure || t.pc < least_pressure) {
+    t.p = std::max(t.p, least_pressure);
     t.pc = std::max(t.pc, t.p);
     const double q = std::sqrt(1.5 * contracted(s)), most = slope * std::sqrt(t.p * (t.pc - t.p));
     for (double& c : s) c *= q > most ? most / q : 1;

@@ -16,10 +16,13 @@ namespace quicksand {
 struct CamClayLaw {
   static constexpr bool kKeepsPreconsolidation = true, kVariesStiffness = true, kNeedsStress = true;
 
-  /// Pa. Least mean pressure: the weight of a millimetre of water. Below it a clay without cohesion would
-  /// have no stiffness and no way back; p and pc are held here and the ledger counts it.
-  static constexpr double kLeastPressure = 10;
+  /// Least mean pressure as a part of the scene's usual stress: the weight of a millimetre of water where
+  /// that is 100 kPa. Below it a clay without cohesion would have no stiffness and no way back; p and pc are
+  /// held there and the ledger counts it. Larger: longer steps for clay that barely touches, which is then
+  /// stiffer.
+  static constexpr double kLeastPart = 1e-4;
 
+  double least_pressure = 10;     ///< Pa
   double compression = 0;         ///< –, λ
   double swelling = 0;            ///< –, κ
   double slope = 0;               ///< –, M
@@ -31,7 +34,7 @@ struct CamClayLaw {
 
   /// Tangent of the elastic law, Pa.
   double bulk(double pressure, double porosity) const {
-    return std::max(pressure, kLeastPressure) / ((1 - porosity) * swelling);
+    return std::max(pressure, least_pressure) / ((1 - porosity) * swelling);
   }
   template <int D>
   double constrained_modulus(const SoilState<D>& state, double porosity) const {

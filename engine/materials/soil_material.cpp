@@ -19,9 +19,11 @@ auto with_named_law(const SoilModel& model, F&& f) {
 
 }  // namespace
 
-SoilMaterial SoilMaterial::from(const Soil& soil, const Water& water) {
+SoilMaterial SoilMaterial::from(const Soil& soil, const Water& water, double usual_stress) {
   SoilMaterial m;
   m.law = with_named_law(soil.model, [&](auto law) { return Law(decltype(law)::from(soil.model)); });
+  if (auto* clay = std::get_if<CamClayLaw>(&m.law))
+    clay->least_pressure = CamClayLaw::kLeastPart * usual_stress;
   m.drag = Drag::from(soil, water);
   m.grain_density = soil.grain_density;
   m.porosity = soil.porosity;

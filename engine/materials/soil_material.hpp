@@ -31,7 +31,8 @@ struct SoilMaterial {
   double shear_share = 0;       ///< –, elastic shear over constrained modulus, (1−2ν)/(2(1−ν))
   std::optional<double> k0{};   ///< –, horizontal over vertical effective stress at the start, if given
 
-  static SoilMaterial from(const Soil& soil, const Water& water);
+  /// `usual_stress`, Pa: of the scene, from which laws take what is small.
+  static SoilMaterial from(const Soil& soil, const Water& water, double usual_stress = 1e5);
 
   /// Elastic constrained modulus of a point, Pa: what its waves travel with.
   template <int D>

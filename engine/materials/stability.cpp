@@ -38,14 +38,21 @@ double dry_step_limit(const SaturatedSoil& soil, double h) {
 }
 
 double coupled_step_limit(const SaturatedSoil& soil, double h) {
+  // In units of the edge, the grains' mass and the dry limit, so that similar soils have the same bits.
+  const double unit = dry_step_limit(soil, h), mass = (1 - soil.porosity) * soil.grain_density;
+  SaturatedSoil plain = soil;
+  plain.grain_density /= mass, plain.water_density /= mass;
+  plain.constrained_modulus = 1;
+  plain.water_compliance *= soil.constrained_modulus;
+  plain.drag *= unit / mass;
   constexpr double kRounding = 1e-9;  // of an eigenvalue of modulus one
   const auto stable = [&](double dt) {
     for (double part : {1.0, 0.5, 0.25})  // of the shortest wave's 2/h
-      if (amplification(soil, part * 2 / h, dt) > 1 + kRounding) return false;
+      if (amplification(plain, part * 2, dt) > 1 + kRounding) return false;
     return true;
   };
-  double low = dry_step_limit(soil, h) * 0.1, high = low;
-  if (!stable(low)) return low;
+  double low = 0.1, high = low;
+  if (!stable(low)) return low * unit;
   constexpr double kLargest = 1e6;  // of the dry limit; no soil is bound there
   while (stable(high) && high < kLargest * low) high *= 2;
   double bound = high / 2;
@@ -53,7 +60,7 @@ double coupled_step_limit(const SaturatedSoil& soil, double h) {
     const double middle = 0.5 * (bound + high);
     (stable(middle) ? bound : high) = middle;
   }
-  return bound;
+  return bound * unit;
 }
 
 double surface_step_limit(const SaturatedSoil& soil, double h) {
@@ -82,9 +89,9 @@ double bounding_edge(Kernel kernel, double h) {
 
 namespace {
 
-/// Pa. Where stiffness varies, tables stand at this times 4^k; softer soil counts as this.
-constexpr double kSoftest = 1e4;
-constexpr int kStiffnesses = 9;  // up to 655 MPa; beyond, the bound falls as 1/modulus, no slower than it may
+/// Where stiffness varies, tables stand at that of soil without stress, than which none is softer, times 4^k.
+constexpr int kStiffnesses =
+    11;  // up to 10⁶ times; beyond, the bound falls as 1/modulus, no slower than it may
 
 }  // namespace
 
@@ -94,7 +101,7 @@ StepLimit::StepLimit(const SoilMaterial& soil, double water_density, double wate
   // are: the bounds are √s times those of the true densities with drag/√s.
   const double slower = std::sqrt(inertia);
   bounds_.resize(soil.varies_stiffness() ? kStiffnesses : 1);
-  double modulus = soil.varies_stiffness() ? kSoftest : soil.constrained_modulus<2>({}, soil.porosity);
+  double modulus = softest_ = soil.constrained_modulus<2>({}, soil.porosity);
   for (Bounds& b : bounds_) {
     for (int i = 0; i < kEntries; ++i) {
       const double n = (i + 0.5) / kEntries;
@@ -123,11 +130,11 @@ double StepLimit::look_up(Table Bounds::*table, double porosity, double modulus)
     return t[i] + (at - i) * (t[i + 1] - t[i]);
   };
   if (bounds_.size() == 1) return entry(0);
-  const double place = 0.5 * std::log2(std::max(modulus / kSoftest, 1.0));
+  const double place = 0.5 * std::log2(std::max(modulus / softest_, 1.0));
   const std::size_t k = static_cast<std::size_t>(place), last = bounds_.size() - 1;
   if (k >= last) return entry(last) * std::pow(4, static_cast<double>(last) - place);
   const double part = place - static_cast<double>(k);  // bounds are powers of the modulus, nearly
-  return std::isinf(entry(k)) ? entry(k) : std::pow(entry(k), 1 - part) * std::pow(entry(k + 1), part);
+  return std::isinf(entry(k)) ? entry(k) : entry(k) * std::pow(entry(k + 1) / entry(k), part);
 }
 
 }  // namespace quicksand

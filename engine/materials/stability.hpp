@@ -70,6 +70,7 @@ class StepLimit {
   };
   double look_up(Table Bounds::*table, double porosity, double modulus) const;
   std::vector<Bounds> bounds_;  ///< one, or one per stiffness
+  double softest_ = 0;          ///< Pa, stiffness of the first
 };
 
 }  // namespace quicksand

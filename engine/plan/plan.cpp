@@ -69,7 +69,7 @@ double initial_soil_limit(const Scene& scene, std::size_t stage, double h, doubl
     if (body.kind == BodyKind::water || body.fixed || !present(scene, stage, body.name)) continue;
     const Soil& soil = scene.soils.at(body.soil);
     const double compliance = scene.water.bulk_modulus ? 1 / *scene.water.bulk_modulus : 0;
-    const SoilMaterial material = SoilMaterial::from(soil, scene.water);
+    const SoilMaterial material = SoilMaterial::from(soil, scene.water, usual_stress(scene, soil));
     const StepLimit limits(material, scene.water.density, compliance, bounding_edge(scene.numerics.kernel, h),
                            inertia);
     const double n = soil.porosity, modulus = initial_modulus(scene, body, material);
@@ -87,7 +87,7 @@ double initial_fast_wave_limit(const Scene& scene, std::size_t stage, double h, 
   for (const Body& body : scene.bodies) {
     if (body.kind != BodyKind::saturated_soil || body.fixed || !present(scene, stage, body.name)) continue;
     const Soil& soil = scene.soils.at(body.soil);
-    const SoilMaterial material = SoilMaterial::from(soil, scene.water);
+    const SoilMaterial material = SoilMaterial::from(soil, scene.water, usual_stress(scene, soil));
     const StepLimit limits(material, scene.water.density, 1 / scene.water.bulk_modulus.value(),
                            bounding_edge(scene.numerics.kernel, h), inertia);
     limit = std::min(limit, limits.fast_wave(soil.porosity, initial_modulus(scene, body, material)));

@@ -52,7 +52,7 @@ SlowProcess slow_process(const Scene& scene, std::size_t stage) {
   for (const Body& body : scene.bodies) {
     if (!counts(scene, stage, body)) continue;
     const Soil& soil = scene.soils.at(body.soil);
-    const SoilMaterial material = SoilMaterial::from(soil, scene.water);
+    const SoilMaterial material = SoilMaterial::from(soil, scene.water, usual_stress(scene, soil));
     const double thickness = height * size_of(scene, body) / size,
                  modulus = initial_modulus(scene, body, material);
     double slowness = std::sqrt((1 - soil.porosity) * soil.grain_density / modulus);  // s/m

@@ -33,7 +33,16 @@ void reserve_space(int file, std::size_t bytes) {
       static_cast<rlim_t>(size + more) > limit.rlim_cur)
     refuse(EFBIG);
   if (fallocate(file, FALLOC_FL_KEEP_SIZE, size, more) == 0) return;
-  if (errno == ENOSPC || errno == EDQUOT || errno == EFBIG || errno == EIO) refuse(errno);
+  if (errno == ENOSPC || errno == EDQUOT || errno == EFBIG || errno == EIO || errno == EROFS) refuse(errno);
+}
+
+DiskRefusal disk_refusal(const std::string& message) {
+  const auto tells = [&](int reason) {
+    return message.find(std::generic_category().message(reason)) != std::string::npos;
+  };
+  if (tells(ENOSPC) || tells(EDQUOT)) return DiskRefusal::full;
+  if (tells(EROFS)) return DiskRefusal::read_only;
+  return tells(EFBIG) || tells(EIO) ? DiskRefusal::other : DiskRefusal::none;
 }
 
 void release_reserved(int file) {

@@ -1,5 +1,6 @@
 #pragma once
 #include <cstddef>
+#include <string>
 
 namespace quicksand {
 
@@ -7,6 +8,10 @@ namespace quicksand {
 /// anything in the file has changed. Throws std::runtime_error with the system's reason ("No space left on
 /// device", "File too large", "Disk quota exceeded"). Where a file system cannot reserve, it does nothing.
 void reserve_space(int file, std::size_t bytes);
+
+/// Why the disk refused, by the system's words in an error's text.
+enum class DiskRefusal { none, full, read_only, other };
+DiskRefusal disk_refusal(const std::string& message);
 
 /// Gives back what was reserved past the end of the file.
 void release_reserved(int file);

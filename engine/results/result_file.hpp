@@ -8,12 +8,15 @@
 
 namespace quicksand {
 
-/// What a run must share with a checkpoint to go on from it: the resolved case and the engine's version among
-/// its documents.
+/// What a run must share with a checkpoint to go on from it: the resolved case, and the engine's version and
+/// build, among its documents.
 std::string run_identity(const std::map<std::string, std::string>& documents);
 
 /// Removes results, finished or not, and checkpoints. Throws std::filesystem::filesystem_error.
 void remove_result_files(const std::string& folder);
+
+/// Gives what an interrupted run left its final names, if every frame can be opened; else it stays and false.
+bool finish_result_files(const std::string& folder);
 
 /// Writes a run's frames and series to `<folder>/result.vtkhdf` (VTKHDF 2.0 PolyData, temporal) and a
 /// generated `<folder>/result.xdmf`, as the run goes: after each `frame` the file is flushed and a kill −9

@@ -100,10 +100,11 @@ void LedgerKeeper<D>::measure(const State<D>& s, const StepReport<D>& step) {
   l.water_volume = water_volume(s);
   l.energy_potential = potential(s);
   if (l.water_volume_initial <= 0) return;
-  const double due =
-      l.water_volume_initial + (l.water_in - l.water_out - l.water_removed) / s.constants.water_density;
-  l.water_volume_drift_max =
-      std::max(l.water_volume_drift_max, std::abs(l.water_volume - due) / l.water_volume_initial);
+  // What gaps finer than the cells took of the room at the start is no drift.
+  const double held = water_held(s),
+               gaps = l.water_volume_initial - l.water_mass_initial / s.constants.water_density;
+  l.water_volume_drift_max = std::max(l.water_volume_drift_max, std::abs(l.water_volume - held - gaps) /
+                                                                    std::max(l.water_volume_initial, held));
 }
 
 template class LedgerKeeper<2>;

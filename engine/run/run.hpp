@@ -78,6 +78,7 @@ struct Progress {
   std::string bound;       ///< what limits it
   std::size_t frames = 0;  ///< that the sink has
   double eta_s = 0;
+  double wall_seconds = 0;  ///< that the run has computed, before it was resumed included
 };
 
 /// Called after every step from the run's own thread; must be cheap.
@@ -95,10 +96,10 @@ class RunMonitor {
 struct Ledger {
   double water_mass_initial = 0, water_mass = 0;      ///< kg (per metre in the plane)
   double solid_mass_initial = 0, solid_mass = 0;      ///< kg
-  double water_volume_initial = 0, water_volume = 0;  ///< m³, room filled by water below its surface
+  double water_volume_initial = 0, water_volume = 0;  ///< m³, room that the water takes (sampling.hpp)
   double water_in = 0, water_out = 0, soil_out = 0;   ///< kg, through reservoirs and open sides
   double water_removed = 0, soil_removed = 0;         ///< kg, of bodies that stages removed
-  double water_volume_drift_max = 0;        ///< largest |V − V0 − (in − out − removed)/ρw| / V0
+  double water_volume_drift_max = 0;  ///< largest change of room − mass/ρw, over V0 or mass/ρw
   std::array<double, 3> momentum_change{};  ///< N·s, Σ m v now less at the start; m × inertia if scaled
   std::array<double, 3> impulse_gravity{}, impulse_walls{}, impulse_loads{};  ///< N·s
   std::array<double, 3> impulse_surface{};  ///< N·s, to drops that the water surface carries along

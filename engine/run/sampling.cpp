@@ -33,10 +33,23 @@ Vec<D> velocity_at(const State<D>& s, const Walls<D>& walls, const Vec<D>& x, Ve
     const PointKernel<D, decltype(shape)> kernel(s.grid, x);
     for (int d = 0; d < D; ++d)
       for_faces(s.grid, walls, kernel, d, [&](int face, double w, double sign, const Vec<D>&) {
-        v[d] += sign * w * velocity(s.flow[d][face]);
+        v[d] += sign * w * velocity(s.speeds[d][face]);
       });
   });
   return v;
+}
+
+/// Whether no kernel of the cell reaches air: it and its neighbours are wet, and theirs.
+template <int D>
+bool deep(const State<D>& s, int cell) {
+  if (!s.cell[cell].confined) return false;
+  for (int d = 0; d < D; ++d)
+    for (int side : {0, 1}) {
+      const int face = cell + side * s.grid.stride[d], other = cell + (2 * side - 1) * s.grid.stride[d];
+      if (s.water_walls.closed(d, face) || in_plate(s, d, face) || submerged(s, d, face)) continue;
+      if (!s.cell[other].confined) return false;
+    }
+  return true;
 }
 
 }  // namespace
@@ -69,12 +82,12 @@ double head_at(const State<D>& s, const Vec<D>& x, double pressure) {
 
 template <int D>
 Vec<D> water_velocity_at(const State<D>& s, const Vec<D>& x) {
-  return velocity_at<D>(s, s.water_walls, x, [](const FaceFlow& f) { return f.water; });
+  return velocity_at<D>(s, s.water_walls, x, [](const FaceSpeeds& f) { return f.water; });
 }
 
 template <int D>
 Vec<D> soil_velocity_at(const State<D>& s, const Vec<D>& x) {
-  return velocity_at<D>(s, s.soil_walls, x, [](const FaceFlow& f) { return f.soil; });
+  return velocity_at<D>(s, s.soil_walls, x, [](const FaceSpeeds& f) { return f.soil; });
 }
 
 template <int D>
@@ -90,12 +103,22 @@ double porosity_at(const State<D>& s, const Vec<D>& x) {
 
 template <int D>
 double water_volume(const State<D>& s) {
-  return s.grid.cell_volume() * s.blocks.template sum<double>([&](int b) {
+  return s.blocks.template sum<double>([&](int b) {
     double v = 0;
     s.blocks.cells(s.grid, b, false, [&](int i, const Cell<D>&) {
-      if (!s.water_walls.blocked(i))
-        v += s.grid.cell_radius(i) * s.cell[i].n * std::clamp(0.5 + s.cell[i].depth, 0.0, 1.0);
+      if (s.water_walls.blocked(i)) return;
+      const double held = s.cell_sums[i].water, room = s.cell[i].n * s.volume.cell(i);
+      v += deep<D>(s, i) ? room : std::min(held, room);
     });
+    return v;
+  });
+}
+
+template <int D>
+double water_held(const State<D>& s) {
+  return s.blocks.template sum<double>([&](int b) {
+    double v = 0;
+    s.blocks.cells(s.grid, b, false, [&](int i, const Cell<D>&) { v += s.cell_sums[i].water; });
     return v;
   });
 }
@@ -111,7 +134,7 @@ double flow_through(const State<D>& s, const Segment& line) {
     for (int cell : {face - s.grid.stride[d], face})
       part += 0.5 * std::clamp(0.5 + s.cell[cell].depth, 0.0, 1.0);
     if (submerged(s, d, face)) part = 1;
-    flow += part * f.n * f.water * s.grid.face_area() * s.grid.face_radius(d, face);
+    flow += part * f.n * s.speeds[d][face].water * s.grid.face_area() * s.grid.face_radius(d, face);
   }
   return flow;
 }
@@ -130,5 +153,7 @@ template double porosity_at<2>(const State<2>&, const Vec<2>&);
 template double porosity_at<3>(const State<3>&, const Vec<3>&);
 template double water_volume<2>(const State<2>&);
 template double water_volume<3>(const State<3>&);
+template double water_held<2>(const State<2>&);
+template double water_held<3>(const State<3>&);
 
 }  // namespace quicksand

@@ -23,10 +23,15 @@ Vec<D> soil_velocity_at(const State<D>& s, const Vec<D>& x);
 template <int D>
 double porosity_at(const State<D>& s, const Vec<D>& x);
 
-/// Volume below the water surface that grains leave to water, m³ (per metre in the plane, per radian about an
-/// axis).
+/// Room that the water takes, m³ (per metre in the plane, per radian about an axis): deep inside, where no
+/// kernel reaches air, all that grains leave; elsewhere what is held, but no more than fits. It falls behind
+/// what is held (mass over density) where points crowd, and exceeds it where they thin out without air
+/// between them.
 template <int D>
 double water_volume(const State<D>& s);
+/// Volume of the water's points, m³, at the moment that `water_volume` measures (the start of the last step).
+template <int D>
+double water_held(const State<D>& s);
 
 /// Discharge of water through the faces on a segment along +x, +y or +z, m³/s (per metre in the plane).
 template <int D>

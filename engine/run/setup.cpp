@@ -4,6 +4,7 @@
 #include <set>
 
 #include "engine/grid/scene_grid.hpp"
+#include "engine/plan/soil_stiffness.hpp"
 #include "engine/points/seeding.hpp"
 #include "engine/run/initial_state.hpp"
 #include "engine/run/surface_load.hpp"
@@ -28,7 +29,7 @@ Constants<D> make_constants(const Scene& scene, const Grid<D>& grid) {
   c.explicit_pressure = scene.numerics.pressure == PressureScheme::explicit_scheme;
   c.points_per_cell = scene.numerics.points_per_cell;
   for (const auto& [name, soil] : scene.soils) {
-    c.soils.push_back(SoilMaterial::from(soil, scene.water));
+    c.soils.push_back(SoilMaterial::from(soil, scene.water, usual_stress(scene, soil)));
     c.step_limits.emplace_back(c.soils.back(), c.water_density, c.water_compliance,
                                bounding_edge(c.kernel, grid.h));
   }

@@ -36,20 +36,23 @@ template <class A, int D>
 void keep_block(A& a, State<D>& s, int block) {
   s.blocks.cells(s.grid, block, true, [&](int i, const Cell<D>&) {
     for (int d = 0; d < D; ++d) {
-      a(s.flow[d][i]);
+      a(s.speeds[d][i]);
+      if (s.keeps_flow()) a(s.flow[d][i]);
       if (!s.follower[d].empty()) a(s.follower[d][i]);
       std::uint8_t lifted = s.soil_walls.separation(d, i);
       a(lifted);
       if constexpr (A::loading) s.soil_walls.set_separation(d, i, lifted);
     }
-    a(s.cell_sums[i], s.cell[i], s.pressure[i]);
+    if (s.counts_room) a(s.cell_sums[i]);
+    if (s.has_water) a(s.cell[i], s.pressure[i]);
   });
 }
 
 /// Velocities behind plates.
 template <class A, int D>
 void keep_ghosts(A& a, State<D>& s) {
-  for (std::size_t i = s.grid.count(); i < s.flow[kPlateAxis].size(); ++i) a(s.flow[kPlateAxis][i]);
+  for (std::size_t i = s.grid.count(); i < s.flow[kPlateAxis].size(); ++i)
+    a(s.speeds[kPlateAxis][i], s.flow[kPlateAxis][i]);
 }
 
 template <class A, int D>

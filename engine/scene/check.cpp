@@ -36,6 +36,7 @@ std::vector<Fault> check(const Scene& scene) {
   if (check_grid(scene, faults)) {
     check_lines(scene, faults);
     check_bodies(scene, faults);
+    check_softness(scene, faults);
   }
   return faults;
 }

@@ -30,6 +30,8 @@ void check_plates(const Scene& scene, Faults& faults);
 void check_probe_places(const Scene& scene, Faults& faults);
 /// Regions of bodies against the domain, the blocks and each other. Needs a sound grid.
 void check_bodies(const Scene& scene, Faults& faults);
+/// Young's modulus and the water's bulk modulus against the weight that they bear.
+void check_softness(const Scene& scene, Faults& faults);
 
 /// Number of cells along an axis of a sound grid; 1 along the third axis of the plane.
 long cells_along(const Scene& scene, std::size_t axis);

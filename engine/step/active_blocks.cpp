@@ -8,11 +8,12 @@ namespace {
 /// Faces and cells of a block become as those that nothing ever reached.
 template <int D>
 void forget(State<D>& s, int block) {
+  const bool keeps_flow = s.keeps_flow();
   s.blocks.cells_at(s.grid, block, true, [&](int i, const Cell<D>&) {
     for (int d = 0; d < D; ++d) {
       s.sums[d][i] = {};
       s.image[d][i] = {};
-      s.flow[d][i] = {};
+      if (keeps_flow) s.flow[d][i] = {};
       s.speeds[d][i] = {};
       if (!s.soil_walls.port(d, i)) s.soil_walls.set_separated(d, i, false);
       s.soil_walls.commit_separated(d, i);

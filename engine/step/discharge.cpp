@@ -16,11 +16,12 @@ double relative_speed(const State<D>& s, const Vec<D>& x, bool fixed) {
   double square = 0;
   for (int d = 0; d < D; ++d) {
     double v = 0;
-    for_faces(s.grid, s.water_walls, kernel, d,
-              [&](int face, double w, double sign, const Vec<D>&) { v += sign * w * s.flow[d][face].water; });
+    for_faces(s.grid, s.water_walls, kernel, d, [&](int face, double w, double sign, const Vec<D>&) {
+      v += sign * w * s.speeds[d][face].water;
+    });
     if (!fixed)
       for_faces(s.grid, s.soil_walls, kernel, d, [&](int face, double w, double sign, const Vec<D>&) {
-        v -= sign * w * s.flow[d][face].soil;
+        v -= sign * w * s.speeds[d][face].soil;
       });
     square += v * v;
   }

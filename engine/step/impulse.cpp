@@ -7,22 +7,25 @@
 // fixed grains, of contact, of the mirrors, and the shear of the water on no-slip walls.
 
 #include "engine/step/phases.hpp"
+#include "engine/step/scheme.hpp"
 
 namespace quicksand {
 namespace {
 
-template <int D>
+template <class P, int D>
 double soil_reaction(const State<D>& s, int d, int face, double dt) {
   const FaceSums& sums = s.sums[d][face];
-  const FaceFlow& f = s.flow[d][face];
+  const FaceSpeeds& v = s.speeds[d][face];
   if (sums.soil_mass <= kMassCutoff * s.constants.water_density * s.volume.face(d, face)) return 0;
-  const double change = f.soil - f.soil_old;
+  const double change = v.soil - v.soil_old;
   const double mirrored = -s.constants.inertia * s.image[d][face].soil * change;
-  const bool stopped = s.soil_walls.closed(d, face) && f.soil == 0;
+  const bool stopped = s.soil_walls.closed(d, face) && v.soil == 0;
   if (stopped || in_plate(s, d, face)) {
-    const double drag = f.exchange * s.volume.face(d, face);
+    const double drag = P::water ? s.flow[d][face].exchange * s.volume.face(d, face) : 0;
     return mirrored + s.constants.inertia * sums.soil_mass * (change - dt * s.constants.fall(d)) - drag;
   }
+  if constexpr (!P::water) return mirrored + dt * sums.soil_force;
+  const FaceFlow& f = s.flow[d][face];
   double gradient = gradient_on_grains(s, d, face);
   if (f.pushed != f.phi)
     gradient += (f.pushed / f.phi - 1) * (gradient - s.constants.water_density * s.constants.gravity[d]);
@@ -33,14 +36,15 @@ template <int D>
 double water_reaction(const State<D>& s, int d, int face, double dt) {
   const FaceSums& sums = s.sums[d][face];
   const FaceFlow& f = s.flow[d][face];
+  const FaceSpeeds& v = s.speeds[d][face];
   if (s.water_walls.closed(d, face)) return -dt * sums.water_mass * s.constants.gravity[d];
-  const double mirrored = -s.constants.inertia * s.image[d][face].water * (f.water - f.water_old);
+  const double mirrored = -s.constants.inertia * s.image[d][face].water * (v.water - v.water_old);
   if (in_plate(s, d, face))
     return mirrored +
-           s.constants.inertia * sums.water_mass * (f.water - f.water_old - dt * s.constants.fall(d));
+           s.constants.inertia * sums.water_mass * (v.water - v.water_old - dt * s.constants.fall(d));
   if (f.wet > 1) return mirrored;  // carried along by the surface
   const double rho = s.constants.water_density, pressure = f.wet ? felt_gradient(s, d, face) : 0;
-  return mirrored + dt * sums.water_mass * (f.viscous - (pressure + f.fixed_drag * f.water / f.n) / rho);
+  return mirrored + dt * sums.water_mass * (f.viscous - (pressure + f.fixed_drag * v.water / f.n) / rho);
 }
 
 /// Drops above the last wet face move with the water below them instead of falling through it.
@@ -48,8 +52,9 @@ template <int D>
 double surface_support(const State<D>& s, int d, int face, double dt) {
   const FaceSums& sums = s.sums[d][face];
   const FaceFlow& f = s.flow[d][face];
+  const FaceSpeeds& v = s.speeds[d][face];
   if (f.wet < 2) return 0;
-  return s.constants.inertia * sums.water_mass * (f.water - f.water_old - dt * s.constants.fall(d)) +
+  return s.constants.inertia * sums.water_mass * (v.water - v.water_old - dt * s.constants.fall(d)) +
          f.exchange * s.volume.face(d, face);
 }
 
@@ -70,17 +75,18 @@ template <int D>
 void add_damping(const State<D>& s, int d, int face, Damped<D>& sum) {
   const FaceSums& sums = s.sums[d][face];
   const FaceFlow& f = s.flow[d][face];
-  const bool stopped = s.soil_walls.closed(d, face) && f.soil == 0;
-  if (!stopped) add_damping(d, s.constants.inertia * sums.soil_mass, f.soil_inertia, f.soil_old, f.soil, sum);
+  const FaceSpeeds& v = s.speeds[d][face];
+  const bool stopped = s.soil_walls.closed(d, face) && v.soil == 0;
+  if (!stopped) add_damping(d, s.constants.inertia * sums.soil_mass, f.soil_inertia, v.soil_old, v.soil, sum);
   if (f.wet < 2)
-    add_damping(d, s.constants.inertia * sums.water_mass, f.water_inertia, f.water_old, f.water, sum);
+    add_damping(d, s.constants.inertia * sums.water_mass, f.water_inertia, v.water_old, v.water, sum);
 }
 
 /// The leader's sums hold a follower's mass as if it had the leader's old velocity.
 template <int D>
 double momentum_beside_leader(const State<D>& s, int d, int face) {
   const Follower& f = s.follower[d][face];
-  return f.leader == 0 ? 0 : f.mass * (f.velocity - s.flow[d][leader_of(s, d, face)].soil_old);
+  return f.leader == 0 ? 0 : f.mass * (f.velocity - s.speeds[d][leader_of(s, d, face)].soil_old);
 }
 
 template <int D>
@@ -97,26 +103,34 @@ struct Sum {
   }
 };
 
+template <class P, int D>
+void add_face(const State<D>& s, int d, int face, double dt, Sum<D>& sum) {
+  if (s.constants.kernel == Kernel::linear) sum.grid[d] += momentum_beside_leader(s, d, face);
+  const FaceSums& sums = s.sums[d][face];
+  if (sums.soil_mass == 0 && sums.water_mass == 0) return;
+  if constexpr (P::soil) sum.reaction[d] += soil_reaction<P>(s, d, face, dt);
+  if constexpr (P::water) {
+    sum.reaction[d] += water_reaction(s, d, face, dt);
+    sum.surface[d] += surface_support(s, d, face, dt);
+  }
+  if (s.constants.damping > 0) add_damping(s, d, face, sum.damped);
+  const FaceSpeeds& v = s.speeds[d][face];
+  const FaceImage& image = s.image[d][face];
+  sum.grid[d] += (sums.soil_mass - image.soil) * v.soil_old + (sums.water_mass - image.water) * v.water_old;
+}
+
 }  // namespace
 
 template <int D>
 Supports<D> support_impulses(const State<D>& s, double dt, double pic) {
-  Sum<D> sum = s.blocks.template sum<Sum<D>>([&](int b) {
-    Sum<D> part;
-    s.blocks.cells(s.grid, b, true, [&](int face, const Cell<D>&) {
-      for (int d = 0; d < D; ++d) {
-        if (s.constants.kernel == Kernel::linear) part.grid[d] += momentum_beside_leader(s, d, face);
-        const FaceSums& sums = s.sums[d][face];
-        if (sums.soil_mass == 0 && sums.water_mass == 0) continue;
-        const FaceFlow& f = s.flow[d][face];
-        part.reaction[d] += soil_reaction(s, d, face, dt) + water_reaction(s, d, face, dt);
-        part.surface[d] += surface_support(s, d, face, dt);
-        if (s.constants.damping > 0) add_damping(s, d, face, part.damped);
-        part.grid[d] += (sums.soil_mass - s.image[d][face].soil) * f.soil_old +
-                        (sums.water_mass - s.image[d][face].water) * f.water_old;
-      }
+  Sum<D> sum = with_phases(s, [&](auto phases) {
+    return s.blocks.template sum<Sum<D>>([&](int b) {
+      Sum<D> part;
+      s.blocks.cells(s.grid, b, true, [&](int face, const Cell<D>&) {
+        for (int d = 0; d < D; ++d) add_face<decltype(phases)>(s, d, face, dt, part);
+      });
+      return part;
     });
-    return part;
   });
   for (const Plate<D>& plate : s.plates)
     for (int d = 0; d < D; ++d) sum.grid[d] += plate.slid[d];

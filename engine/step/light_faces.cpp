@@ -105,9 +105,9 @@ void follow_leaders(State<D>& s) {
   for_each_face<D>(s, [&](int d, int face) {
     const Follower& f = s.follower[d][face];
     if (f.leader == 0) return;
-    const FaceFlow& leader = s.flow[d][leader_of(s, d, face)];
-    s.flow[d][face].soil_old = f.velocity;
-    s.flow[d][face].soil = f.velocity + leader.soil - leader.soil_old;
+    const FaceSpeeds& leader = s.speeds[d][leader_of(s, d, face)];
+    s.speeds[d][face].soil_old = f.velocity;
+    s.speeds[d][face].soil = f.velocity + leader.soil - leader.soil_old;
   });
 }
 

@@ -33,7 +33,7 @@ Vec<D> grains_at(const State<D>& s, const PointKernel<D, Shape>& kernel, Gradien
   Vec<D> v{};
   for (int d = 0; d < D; ++d)
     for_faces(s.grid, s.soil_walls, kernel, d, [&](int face, double w, double sign, const Vec<D>& gradient) {
-      const double soil = sign * s.flow[d][face].soil;
+      const double soil = sign * s.speeds[d][face].soil;
       v[d] += w * soil;
       for (int j = 0; j < D; ++j) l[d][j] += gradient[j] * soil;
     });

@@ -101,15 +101,17 @@ template <int D>
 void unfold_ghosts(State<D>& s) {
   const auto& ghosts = s.water_walls.ghosts(kAlong);
   for (std::size_t k = 0; k < ghosts.size(); ++k) {
-    FaceFlow& out = s.flow[kAlong][s.grid.count() + k];
-    const FaceFlow& row = s.flow[kAlong][ghosts[k].carried];
+    FaceSpeeds& out = s.speeds[kAlong][s.grid.count() + k];
+    const FaceSpeeds& row = s.speeds[kAlong][ghosts[k].carried];
     if (s.plates[s.plate_of[ghosts[k].carried] - 1].folded) {
-      const FaceFlow& in = s.flow[kAlong][ghosts[k].inner];
+      const FaceSpeeds& in = s.speeds[kAlong][ghosts[k].inner];
+      s.flow[kAlong][s.grid.count() + k] = {};
       out = {};
       out.water_old = 2 * row.water_old - in.water_old;
       out.water = 2 * row.water - in.water;
     } else {
-      out = s.flow[kAlong][behind(ghosts[k])];
+      s.flow[kAlong][s.grid.count() + k] = s.flow[kAlong][behind(ghosts[k])];
+      out = s.speeds[kAlong][behind(ghosts[k])];
     }
   }
 }
@@ -119,14 +121,14 @@ template <int D>
 void unfold_grains(State<D>& s, const Plate<D>& plate) {
   const int up = s.grid.stride[kAlong];
   for (int face : plate.row) {
-    const FaceFlow &in = s.flow[kAlong][face - up], &row = s.flow[kAlong][face];
-    FaceFlow& out = s.flow[kAlong][face + up];
+    const FaceSpeeds &in = s.speeds[kAlong][face - up], &row = s.speeds[kAlong][face];
+    FaceSpeeds& out = s.speeds[kAlong][face + up];
     out.soil_old = 2 * row.soil_old - in.soil_old;
     out.soil = 2 * row.soil - in.soil;
   }
   for (const auto& [d, inner] : plate.beside) {
-    const FaceFlow& in = s.flow[d][inner];
-    FaceFlow& out = s.flow[d][inner + up];
+    const FaceSpeeds& in = s.speeds[d][inner];
+    FaceSpeeds& out = s.speeds[d][inner + up];
     const double twice = plate.rough ? 2 * plate.rise(s.time) * plate.velocity[d] : 0,
                  sign = plate.rough ? -1 : 1;
     out.soil_old = twice + sign * in.soil_old;
@@ -184,6 +186,7 @@ void make_ghosts(State<D>& s) {
     s.sums[kAlong][s.grid.count() + k] = {};
     s.image[kAlong][s.grid.count() + k] = {};
     s.flow[kAlong][s.grid.count() + k] = s.flow[kAlong][behind(ghosts[k])];
+    s.speeds[kAlong][s.grid.count() + k] = s.speeds[kAlong][behind(ghosts[k])];
   }
 }
 

@@ -40,7 +40,7 @@ template <int D>
 void hold_row(State<D>& s, const Plate<D>& plate) {
   for (int face : plate.row) {
     FaceFlow& f = s.flow[kAlong][face];
-    f.soil = f.water = plate.speed;
+    s.speeds[kAlong][face].soil = s.speeds[kAlong][face].water = plate.speed;
     f.soil_response = f.water_response = 0;
     f.drag = f.fixed_drag = f.viscous = 0;
     f.soil_inertia = f.water_inertia = 1;  // what a plate holds moves as the plate does, undamped

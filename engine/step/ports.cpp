@@ -36,7 +36,7 @@ template <int D>
 bool seeps(const State<D>& s, const Port<D>& port) {
   const int cell = inner_cell(s, port);
   if (!s.cell[cell].wet()) return true;
-  if (port.open) return port.inward * s.flow[port.d][port.face].water <= 0;
+  if (port.open) return port.inward * s.speeds[port.d][port.face].water <= 0;
   const double still = s.constants.water_density * s.constants.gravity[port.d] * port.inward;
   const double at_face = s.pressure[cell] - 0.5 * s.grid.h * still;
   return at_face > kOpeningPressure * weight_of_water(s) * s.grid.h;
@@ -82,10 +82,9 @@ class WaterPass {
 
   void count_flux() {
     for (Port<D>& port : s_.ports) {
-      const FaceFlow& f = s_.flow[port.d][port.face];
+      const double flux = s_.flow[port.d][port.face].n * s_.speeds[port.d][port.face].water;
       if (port.submerged())
-        port.owed +=
-            dt_ * s_.grid.face_area() * s_.grid.face_radius(port.d, port.face) * port.inward * f.n * f.water;
+        port.owed += dt_ * s_.grid.face_area() * s_.grid.face_radius(port.d, port.face) * port.inward * flux;
       else
         port.owed = 0;  // water only leaves
     }
@@ -243,7 +242,7 @@ class WaterPass {
   void let_in(int k) {
     Port<D>& port = s_.ports[k];
     const FaceFlow& f = s_.flow[port.d][port.face];
-    if (port.owed <= 0 || port.inward * f.water <= 0) return;
+    if (port.owed <= 0 || port.inward * s_.speeds[port.d][port.face].water <= 0) return;
     const int lanes = power(s_.constants.points_per_cell, D - 1);
     used_.assign(lanes, 0);
     std::vector<std::size_t> here;
@@ -273,7 +272,7 @@ class WaterPass {
     const auto p = static_cast<std::uint32_t>(s_.water.size());
     Vec<D> x = lane_place(port, lane), v{};
     x[port.d] = place_of(port, depth);
-    v[port.d] = s_.flow[port.d][port.face].water;
+    v[port.d] = s_.speeds[port.d][port.face].water;
     s_.water.add(x, v, 0, kInflowBody);
     s_.straddlers.push_back({p, k, depth, full_mass});
     put(s_.straddlers.back());
@@ -316,7 +315,7 @@ void set_ports(State<D>& s) {
     port.below_level = level > port.elevation;
     // The reservoir is still: what flows in has turned head into speed, p = γ (H − z) − ½ ρw v²; what flows
     // out loses its speed outside. Energy then never enters but with the water.
-    const double inflow = std::max(0.0, port.inward * s.flow[port.d][port.face].water);
+    const double inflow = std::max(0.0, port.inward * s.speeds[port.d][port.face].water);
     port.pressure =
         std::max(0.0, weight * (level - port.elevation) - 0.5 * s.constants.water_density * inflow * inflow);
     const bool open = port.submerged() || seeps(s, port);

@@ -25,18 +25,30 @@ double speed_in(const State<D>& s, int cell) {
   double speed = 0;
   for (int d = 0; d < D; ++d)
     for (int face : {cell, cell + s.grid.stride[d]})
-      speed = std::max(speed, std::abs(s.flow[d][face].water_old));
+      speed = std::max(speed, std::abs(s.speeds[d][face].water_old));
   return speed;
+}
+
+/// Largest part of a cell's width per second that drift may be fed back over, 1/s. Among grains it is slow
+/// (see above). Water alone may not stay compressed at rest either: a wave as long as the cell passes it in
+/// the meantime.
+template <int D>
+double drift_pace(const State<D>& s, int cell) {
+  const double inverse_h = s.grid.inverse_h, passes = speed_in(s, cell) * inverse_h;
+  if (s.cell_sums[cell].grains > 0) return passes / kDriftCells;
+  double g2 = 0;
+  for (int d = 0; d < D; ++d) g2 += s.constants.fall(d) * s.constants.fall(d);
+  return std::max(passes, std::sqrt(std::sqrt(g2) * inverse_h));
 }
 
 /// 1/s
 template <int D>
 double drift_rate(const State<D>& s, int cell) {
   const double excess = s.cell[cell].excess;
-  if (s.constants.drift_time <= 0 || std::abs(excess) <= kDriftDeadBand) return 0;
-  const double beyond = excess - std::copysign(kDriftDeadBand, excess);
-  const double rate =
-      std::min(1 / s.constants.drift_time, speed_in(s, cell) * s.grid.inverse_h / kDriftCells);
+  const double band = kDriftDeadBand + std::abs(s.pressure[cell]) * s.constants.water_compliance;
+  if (s.constants.drift_time <= 0 || std::abs(excess) <= band) return 0;
+  const double beyond = excess - std::copysign(band, excess);
+  const double rate = std::min(1 / s.constants.drift_time, drift_pace(s, cell));
   return std::clamp(beyond, -kDriftLimit, kDriftLimit) * rate;
 }
 
@@ -89,7 +101,7 @@ void assemble(State<D>& s, PressureSystem<D>& m, double dt) {
           if (s.water_walls.closed(d, face)) continue;
           const FaceFlow& f = s.flow[d][face];
           const double at = kAxial ? s.grid.face_radius(d, face) : 1;
-          rhs += (1 - 2 * side) * at * f.flux() * inverse_h;
+          rhs += (1 - 2 * side) * at * f.flux(s.speeds[d][face]) * inverse_h;
           const double beta = at * f.flux_response() * inverse_h2;
           const CellState& o = s.cell[other];
           if (const Port<D>* port = port_at(s, d, face)) {

@@ -55,11 +55,13 @@ QUICKSAND_INLINE BatchLanes update_soil(State<D>& s, const PointBatch<D>& batch,
                                         Totals<D>& totals) {
   SoilPoints<D>& soil = s.soil;
   std::array<const SoilMaterial*, kBatch> material;
-  BatchLanes max_porosity;
-  for (int k = 0; k < kBatch; ++k) {
-    material[k] = &s.constants.soils[soil.soil[batch.point[k]]];
-    max_porosity[k] = material[k]->max_porosity;
-  }
+  material.fill(&s.constants.soils.front());
+  BatchLanes max_porosity = all_lanes<BatchLanes>(material[0]->max_porosity);
+  if (s.constants.soils.size() > 1)
+    for (int k = 0; k < kBatch; ++k) {
+      material[k] = &s.constants.soils[soil.soil[batch.point[k]]];
+      max_porosity[k] = material[k]->max_porosity;
+    }
   const BatchLanes before = batch.get(soil.porosity);
   const BatchLanes n = strained_porosity<D>(before, volume_ratio<D, BatchLanes>(l, dt) * (1.0 + dt * hoop),
                                             batch.count, totals.interventions.clamped_values);

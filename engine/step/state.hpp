@@ -52,15 +52,19 @@ struct FixedFace {
   double resistivity = 0;    ///< N·s/m⁴, ρw g/k over the part that is soil
 };
 
-/// Velocities of a face and how they answer to a pressure gradient G: v = v̂ − response·G.
+/// Velocities of a face at the start and the end of the step, m/s: what points read, close together in
+/// memory.
+struct alignas(32) FaceSpeeds {
+  double soil_old = 0, soil = 0, water_old = 0, water = 0;
+};
+
+/// What a face's velocities follow from: how they answer to a pressure gradient G, v = v̂ − response·G, and
+/// what is between the phases. Kept only where State::keeps_flow.
 struct FaceFlow {
-  double soil_old = 0, soil = 0;                 ///< m/s
-  double water_old = 0, water = 0;               ///< m/s
   double soil_response = 0, water_response = 0;  ///< m/s per Pa/m
   double phi = 0, n = 1;                         ///< –, moving grains; room for water
-  double pushed = 0;       ///< –, of the grains, by what the gradient is beyond still water's
-  std::uint8_t wet = 0;    ///< 1: a side has pressure; 2, 3: extrapolated from such
-  bool soil_held = false;  ///< grains are in contact with a wall here
+  double pushed = 0;     ///< –, of the grains, by what the gradient is beyond still water's
+  std::uint8_t wet = 0;  ///< 1: a side has pressure; 2, 3: extrapolated from such
   /// –, part of the soil of a face just above the water surface that lies below it, as far as kernels reach:
   /// it shares the pressure gradient of the face at the surface, `soaked_by`.
   double soaked = 0;
@@ -72,13 +76,8 @@ struct FaceFlow {
   double viscous = 0;                          ///< N/kg, force of the viscosity on the water
   double soil_inertia = 1, water_inertia = 1;  ///< –, what damping multiplies inertia by in this step
 
-  double flux() const { return phi * soil + n * water; }
+  double flux(const FaceSpeeds& v) const { return phi * v.soil + n * v.water; }  ///< m/s
   double flux_response() const { return phi * soil_response + n * water_response; }
-};
-
-/// What points read of a face's velocities, m/s, close together in memory.
-struct alignas(32) FaceSpeeds {
-  double soil_old = 0, soil = 0, water_old = 0, water = 0;
 };
 
 struct CellSums {
@@ -230,8 +229,10 @@ struct State {
   Walls<D> soil_walls;   ///< the same and the surfaces of fixed soil
   Constants<D> constants;
 
-  bool has_water = false;   ///< there is water, or it can come in; else all that is about water stays zero
-  bool has_soil = false;    ///< there are grains, moving or fixed
+  bool has_water = false;  ///< there is water, or it can come in; else all that is about water stays zero
+  bool has_soil = false;   ///< there are grains, moving or fixed
+  /// Grains alone need only their velocities, unless damping or plates ask for more.
+  bool keeps_flow() const { return has_water || constants.damping > 0 || !plates.empty(); }
   bool counts_room = true;  ///< what soil takes of cells is asked for: by water, plates or samples
   SoilPoints<D> soil;       ///< moving grains
   SoilPoints<D> fixed;      ///< grains held in place
@@ -256,8 +257,8 @@ struct State {
   std::array<Field<FaceSums>, D> sums;
   std::array<Field<FaceImage>, D> image;
   std::array<Field<Follower>, D> follower;  ///< linear kernel only
+  std::array<Field<FaceSpeeds>, D> speeds;
   std::array<Field<FaceFlow>, D> flow;
-  std::array<Field<FaceSpeeds>, D> speeds;  ///< of `flow`, once it is final
   std::array<Field<FixedFace>, D> fixed_face;
   Field<CellSums> cell_sums;
   Field<CellSums> fixed_cell;

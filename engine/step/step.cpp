@@ -16,8 +16,8 @@ bool travels_too_far(const State<D>& s, double dt) {
     long far = 0;
     s.blocks.cells(s.grid, b, true, [&](int face, const Cell<D>&) {
       for (int d = 0; d < D; ++d) {
-        const FaceFlow& f = s.flow[d][face];
-        far += std::abs(f.soil) > limit || std::abs(f.water) > limit;
+        const FaceSpeeds& v = s.speeds[d][face];
+        far += std::abs(v.soil) > limit || std::abs(v.water) > limit;
       }
     });
     return far;

@@ -8,13 +8,21 @@
 namespace quicksand {
 namespace {
 
-/// Row d of the symmetric effective stress.
+/// Row d of a symmetric tensor.
 template <int D>
-Vec<D> stress_row(const Stress<D>& s, int d) {
+QUICKSAND_INLINE std::array<BatchLanes, D> stress_row(const Stress<D, BatchLanes>& s, int d) {
   if constexpr (D == 2)
-    return d == 0 ? Vec<2>{s[0], s[3]} : Vec<2>{s[3], s[1]};
+    return {d == 0 ? s[0] : s[3], d == 0 ? s[3] : s[1]};
   else
-    return d == 0 ? Vec<3>{s[0], s[3], s[5]} : d == 1 ? Vec<3>{s[3], s[1], s[4]} : Vec<3>{s[5], s[4], s[2]};
+    return {d == 0   ? s[0]
+            : d == 1 ? s[3]
+                     : s[5],
+            d == 0   ? s[3]
+            : d == 1 ? s[1]
+                     : s[4],
+            d == 0   ? s[5]
+            : d == 1 ? s[4]
+                     : s[2]};
 }
 
 /// m/s, for drag that follows it.
@@ -33,23 +41,43 @@ Lanes<8> unit(int lane) {
   return v;
 }
 
-/// Of one soil point, what faces get of it whatever their component.
+/// Of a batch of soil points.
+template <int D>
 struct SoilShare {
-  double mass, grains, bulk, resistivity;  ///< kg, m³, m³, N·s/m
+  BatchLanes mass, grains, bulk, resistivity{};  ///< kg, m³, m³, N·s/m
+  Stress<D, BatchLanes> force;                   ///< N, −bulk × stress / h
 };
 
-/// What a soil point leaves on the window of component d, by node.
-template <class S, int d, int D, class Kernel>
-QUICKSAND_INLINE void add_soil(const State<D>& s, const Kernel& kernel, int k, std::uint32_t p,
-                               const SoilShare& share, std::array<Lanes<8>, CellWindow<D>::kFaces>& sums) {
+template <int D>
+QUICKSAND_INLINE SoilShare<D> soil_share(const State<D>& s, const PointBatch<D>& batch) {
   const SoilPoints<D>& soil = s.soil;
-  // −bulk × row of the stress per cell, [FMS19] eq. (1), ∇·σ′ in its weak form.
-  Vec<D> stress = stress_row<D>(soil.stress[p], d);
-  for (double& component : stress) component *= -share.bulk * s.grid.inverse_h;
-  // About an axis σθθ/r pulls towards it: the weak form's σθθ v_r/r.
-  const double hoop = S::axial && d == 0 ? -share.bulk * soil.stress[p][2] / soil.x[p][0] : 0;
-  const Lanes<8> carried{share.mass, share.grains,      share.bulk, share.mass * soil.v[p][d],
-                         hoop,       share.resistivity, stress[d],  0};
+  const auto& soils = s.constants.soils;
+  BatchLanes density = all_lanes<BatchLanes>(soils.front().grain_density);
+  if (soils.size() > 1)
+    for (int k = 0; k < kBatch; ++k) density[k] = soils[soil.soil[batch.point[k]]].grain_density;
+  SoilShare<D> share;
+  const BatchLanes n = batch.get(soil.porosity);
+  share.mass = batch.get(soil.mass);
+  share.grains = share.mass / density;
+  share.bulk = share.grains / (1.0 - n);
+  if (s.has_water)
+    for (int k = 0; k < batch.count; ++k) {
+      const std::uint32_t p = batch.point[k];
+      share.resistivity[k] =
+          share.bulk[k] * soils[soil.soil[p]].drag.resistivity(n[k], discharge_of(soil, p));
+    }
+  share.force = batch.get(soil.stress);
+  const BatchLanes per_cell = -s.grid.inverse_h * share.bulk;
+  for (BatchLanes& component : share.force) component *= per_cell;
+  return share;
+}
+
+/// What soil point k leaves on the window of component d, by node: `carried` in the order of FaceSums, and
+/// the forces per derivative of its weights (per cell), [FMS19] eq. (1), ∇·σ′ in its weak form.
+template <class S, int d, int D, class Kernel>
+QUICKSAND_INLINE void add_soil(const Kernel& kernel, int k, const Lanes<8>& carried,
+                               const std::array<BatchLanes, D>& force, double h, const Vec<D>* gradient,
+                               std::array<Lanes<8>, CellWindow<D>::kFaces>& sums) {
   const auto& own = kernel.face[d];
   const auto& other = kernel.center[axis_of(d, 1)];
   const auto& last = kernel.center[axis_of(d, D - 1)];
@@ -57,22 +85,21 @@ QUICKSAND_INLINE void add_soil(const State<D>& s, const Kernel& kernel, int k, s
   std::array<Lanes<8>, 4> along;
   for (int x = 0; x < 4; ++x)
     along[x] = where(own_force, all_lanes<Lanes<8>>(own.dw[x][k]), all_lanes<Lanes<8>>(own.w[x][k]));
-  for (int z = 0; z < (D == 3 ? 3 : 1); ++z)
+  for (int z = 0; z < CellWindow<D>::kLast; ++z)
     for (int y = 0; y < 3; ++y) {
-      double w = other.w[y][k], force = other.dw[y][k] * stress[axis_of(d, 1)];
+      double w = other.w[y][k], across = other.dw[y][k] * force[axis_of(d, 1)][k];
       if constexpr (D == 3) {
-        force = force * last.w[z][k] + w * last.dw[z][k] * stress[axis_of(d, 2)];
+        across = across * last.w[z][k] + w * last.dw[z][k] * force[axis_of(d, 2)][k];
         w *= last.w[z][k];
       }
-      Lanes<8> row = w * carried + force * unit(kForce);
+      Lanes<8> row = w * carried + across * unit(kForce);
       Lanes<8> turning{};         // momentum per arm along the own axis
       if constexpr (S::affine) {  // [JSSTS15] eq. (8), per component of the staggered grid
-        const Vec<D>& gradient = soil.affine[p][d];
-        const double momentum = w * share.mass * s.grid.h;
-        double across = gradient[axis_of(d, 1)] * (y - 1 - other.at[k]);
-        if constexpr (D == 3) across += gradient[axis_of(d, 2)] * (z - 1 - last.at[k]);
-        row += momentum * across * unit(kMomentum);
-        turning = momentum * gradient[d] * unit(kMomentum);
+        const double mass = w * carried[0] * h;
+        double arms = (*gradient)[axis_of(d, 1)] * (y - 1 - other.at[k]);
+        if constexpr (D == 3) arms += (*gradient)[axis_of(d, 2)] * (z - 1 - last.at[k]);
+        row += mass * arms * unit(kMomentum);
+        turning = mass * (*gradient)[d] * unit(kMomentum);
       }
       for (int x = 0; x < 4; ++x) {
         Lanes<8>& sum = sums[x + 4 * (y + 3 * z)];
@@ -97,24 +124,24 @@ QUICKSAND_INLINE void add_to_centers(const Kernel& kernel, int k, const T& value
 
 template <class S, int D>
 void soil_to_faces(State<D>& s, const Cell<D>& cell, const PointBatch<D>& batch) {
-  const SoilPoints<D>& soil = s.soil;
+  const std::array<BatchLanes, D> x = batch.get(s.soil.x), v = batch.get(s.soil.v);
   CellKernel<D, typename S::Shape> kernel;
-  kernel.find(s.grid, cell, batch.get(soil.x));
-  std::array<SoilShare, kBatch> share;
-  for (int k = 0; k < batch.count; ++k) {
-    const std::uint32_t p = batch.point[k];
-    const SoilMaterial& material = s.constants.soils[soil.soil[p]];
-    const double mass = soil.mass[p], n = soil.porosity[p];
-    const double grains = mass / material.grain_density, bulk = grains / (1 - n);
-    share[k] = {mass, grains, bulk,
-                s.has_water ? bulk * material.drag.resistivity(n, discharge_of(soil, p)) : 0};
-  }
+  kernel.find(s.grid, cell, x);
+  const SoilShare<D> share = soil_share(s, batch);
   const int home = s.grid.index(cell);
   const CellWindow<D> window(s.grid, s.soil_walls, home);
   const Lanes<8> kept{1, 1, 1, 1, 1, 1, 0, 0}, turned{1, 1, 1, -1, -1, 1, 0, 0};
-  for_components<D>([&](auto d) {
+  for_components<D>([&](auto d) __attribute__((always_inline)) {
+    BatchLanes hoop{};  // about an axis σθθ/r pulls towards it: the weak form's σθθ v_r/r
+    if constexpr (S::axial && d == 0) hoop = s.grid.h * share.force[2] / x[0];
+    const std::array<BatchLanes, D> force = stress_row<D>(share.force, d);
+    const std::array<Lanes<8>, 8> carried =
+        transposed({share.mass, share.grains, share.bulk, share.mass * v[d], hoop, share.resistivity,
+                    force[d], BatchLanes{}});
     std::array<Lanes<8>, CellWindow<D>::kFaces> sums{};
-    for (int k = 0; k < batch.count; ++k) add_soil<S, d>(s, kernel, k, batch.point[k], share[k], sums);
+    for (int k = 0; k < batch.count; ++k)
+      add_soil<S, d, D>(kernel, k, carried[k], force, s.grid.h,
+                        S::affine ? &s.soil.affine[batch.point[k]][d] : nullptr, sums);
     window.faces(
         d, [&](int node, int face, double sign) __attribute__((always_inline)) {
           const Lanes<8> sum =
@@ -127,7 +154,7 @@ void soil_to_faces(State<D>& s, const Cell<D>& cell, const PointBatch<D>& batch)
   // Room is measured with the water's own kernels, so that grains and water fold at the same walls.
   std::array<Lanes<2>, CellWindow<D>::kCenters> room{};
   for (int k = 0; k < batch.count; ++k)
-    add_to_centers<D>(kernel, k, Lanes<2>{share[k].grains, share[k].bulk}, room);
+    add_to_centers<D>(kernel, k, Lanes<2>{share.grains[k], share.bulk[k]}, room);
   CellWindow<D>(s.grid, s.water_walls, home).centers([&](int node, int to) __attribute__((always_inline)) {
     add_lanes<2>(s.cell_sums[to].grains, room[node]);
   });
@@ -198,7 +225,7 @@ void points_to_faces(State<D>& s) {
         if (image.soil != 0 || image.water != 0) image = {};
         s.soil_walls.commit_separated(d, i);
       }
-      s.cell_sums[i] = has_fixed ? s.fixed_cell[i] : CellSums{};
+      if (s.counts_room) s.cell_sums[i] = has_fixed ? s.fixed_cell[i] : CellSums{};
     });
   });
   with_scheme(s, [&](auto scheme) {

@@ -10,28 +10,8 @@
 #include "engine/threads/chunks.hpp"
 
 namespace quicksand {
-namespace {
-
-template <int D>
-void publish_speeds(State<D>& s) {
-  const auto publish = [&](int d, std::size_t i) {
-    const FaceFlow& f = s.flow[d][i];
-    s.speeds[d][i] = {f.soil_old, f.soil, f.water_old, f.water};
-  };
-  s.blocks.all([&](int b) {
-    s.blocks.cells(s.grid, b, true, [&](int i, const Cell<D>&) {
-      for (int d = 0; d < D; ++d) publish(d, i);
-    });
-  });
-  for (std::size_t ghost = s.grid.count(); ghost < s.flow[kPlateAxis].size(); ++ghost)
-    publish(kPlateAxis, ghost);
-}
-
-}  // namespace
-
 template <int D>
 void faces_to_points(State<D>& s, double dt, StepReport<D>& report) {
-  publish_speeds(s);
   const double pic = s.constants.transfer == Transfer::apic ? 1 : 1 - std::exp(-s.constants.pic_rate * dt);
   const Supports<D> supports = support_impulses(s, dt, pic);
   report.impulse_walls = supports.walls;

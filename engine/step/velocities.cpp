@@ -40,10 +40,13 @@ struct Balance {
   double fixed_drag = 0;  ///< dt × R of grains that do not move
 };
 
+/// All of a face while it is worked out.
+struct FaceTrial : FaceFlow, FaceSpeeds {};
+
 /// Implicit drag: [FMS19] eqs. (1) and (2) as one 2×2 system, solved for v̂ and for the response to G.
 /// The water's inertia is that of a full face, but its points carry only the mass that is there, a few per
 /// cent more or less; `water_drag` is scaled so that points of both phases exchange exactly one impulse.
-void solve_pair(const Balance& b, double dt, FaceFlow& f) {
+void solve_pair(const Balance& b, double dt, FaceTrial& f) {
   const double a11 = b.soil_mass + b.drag, a12 = -b.drag;
   const double a22 = b.water_mass + b.water_drag + b.fixed_drag, a21 = -b.water_drag;
   const double det = a11 * a22 - a12 * a21;
@@ -54,21 +57,21 @@ void solve_pair(const Balance& b, double dt, FaceFlow& f) {
 }
 
 /// Water past grains that are held.
-void solve_water(const Balance& b, double dt, FaceFlow& f) {
+void solve_water(const Balance& b, double dt, FaceTrial& f) {
   const double a = b.water_mass + b.water_drag + b.fixed_drag;
   f.soil = f.soil_response = 0;
   f.water = b.water_momentum / a;
   f.water_response = dt * f.n / a;
 }
 
-void solve_soil(const Balance& b, double dt, FaceFlow& f) {
+void solve_soil(const Balance& b, double dt, FaceTrial& f) {
   f.soil = b.soil_momentum / b.soil_mass;
   f.soil_response = dt * f.pushed / b.soil_mass;
   f.water = f.water_response = 0;
 }
 
 /// v̂ and responses of what is there: water, and grains if they move.
-void solve(const Balance& b, double dt, bool moving_soil, FaceFlow& f) {
+void solve(const Balance& b, double dt, bool moving_soil, FaceTrial& f) {
   if (b.water_mass > 0 && moving_soil)
     solve_pair(b, dt, f);
   else if (b.water_mass > 0)
@@ -79,8 +82,8 @@ void solve(const Balance& b, double dt, bool moving_soil, FaceFlow& f) {
 
 /// Inertia with which each phase is damped, from what it would do in this step under the last pressure.
 template <int D>
-void damp(const State<D>& s, int d, int face, double dt, bool moving_soil, Balance& b, FaceFlow& f) {
-  FaceFlow trial = f;
+void damp(const State<D>& s, int d, int face, double dt, bool moving_soil, Balance& b, FaceTrial& f) {
+  FaceTrial trial = f;
   solve(b, dt, moving_soil, trial);
   const double alpha = s.constants.damping;
   if (moving_soil) {
@@ -167,10 +170,9 @@ double pushed_part(double phi, double resistivity, double fixed_phi, double fixe
 }
 
 template <class P, int D>
-void predict_face(State<D>& s, int d, int face, double dt) {
+FaceTrial predicted(State<D>& s, int d, int face, double dt) {
   const FaceSums& sums = s.sums[d][face];
-  FaceFlow& f = s.flow[d][face];
-  f = {};
+  FaceTrial f;
   const double volume = s.volume.face(d, face), rho = s.constants.water_density;
   const double inertia = s.constants.inertia, fall = s.constants.fall(d);
   const bool soil = P::soil && sums.soil_mass > kMassCutoff * rho * volume;
@@ -182,7 +184,7 @@ void predict_face(State<D>& s, int d, int face, double dt) {
   f.wet = wet;
   if (!soil && !water && !wet) {
     if (soil_closed) s.soil_walls.set_separated(d, face, false);
-    return;
+    return f;
   }
 
   // A face at the water surface stands for the wet part of its volume: what half a face of saturated soil
@@ -226,17 +228,20 @@ void predict_face(State<D>& s, int d, int face, double dt) {
   if (soil && soil_closed) {
     // Contact, one-sided: grains stay on the wall while what acts on them, with the last pressure
     // gradient, presses them to it.
-    FaceFlow trial = f;
+    FaceTrial trial = f;
     solve(b, dt, true, trial);
     const double leaving = trial.soil - trial.soil_response * pressure_gradient(s, d, face);
     held = !(leaving * leaving_direction(s, d, face) > 0);
   }
   if (soil_closed) s.soil_walls.set_separated(d, face, soil && !held);
-  f.soil_held = held;
   const bool moving_soil = soil && !held;
-  if (s.constants.damping > 0) damp(s, d, face, dt, moving_soil, b, f);
+  if (s.constants.damping > 0) {
+    s.flow[d][face] = f;  // for the gradient that the grains feel
+    damp(s, d, face, dt, moving_soil, b, f);
+  }
   solve(b, dt, moving_soil, f);
   if (!water_open) f.water = f.water_response = 0;
+  return f;
 }
 
 /// Whether a wall lies between two neighbouring faces of component d, `side` of `face` along axis a ≠ d.
@@ -260,7 +265,7 @@ bool extrapolate(const State<D>& s, int d, int face, std::uint8_t level, double&
       const std::uint8_t wet =
           std::atomic_ref(const_cast<std::uint8_t&>(o.wet)).load(std::memory_order_relaxed);
       if (wet == 0 || wet >= level || s.water_walls.closed(d, other)) continue;
-      sum += o.water;
+      sum += s.speeds[d][other].water;
       ++count;
     }
   if (count) value = sum / count;
@@ -271,10 +276,15 @@ bool extrapolate(const State<D>& s, int d, int face, std::uint8_t level, double&
 
 template <int D>
 void predict_velocities(State<D>& s, double dt) {
+  const bool keeps_flow = s.keeps_flow();
   with_phases(s, [&](auto phases) {
     s.blocks.all([&](int b) {
       s.blocks.cells(s.grid, b, true, [&](int face, const Cell<D>&) {
-        for (int d = 0; d < D; ++d) predict_face<decltype(phases)>(s, d, face, dt);
+        for (int d = 0; d < D; ++d) {
+          const FaceTrial f = predicted<decltype(phases)>(s, d, face, dt);
+          s.speeds[d][face] = f;
+          if (keeps_flow) s.flow[d][face] = f;
+        }
       });
     });
   });
@@ -287,17 +297,18 @@ void correct_velocities(State<D>& s, double dt) {
     s.blocks.all([&](int b) {
       s.blocks.cells(s.grid, b, true, [&](int face, const Cell<D>&) {
         for (int d = 0; d < D; ++d) {
-          FaceFlow& f = s.flow[d][face];
+          FaceSpeeds& v = s.speeds[d][face];
           if constexpr (P::water) {
+            FaceFlow& f = s.flow[d][face];
             const double g = gradient_on_grains(s, d, face);
-            if (f.wet || f.soaked > 0) f.water -= f.water_response * g;
+            if (f.wet || f.soaked > 0) v.water -= f.water_response * g;
             if constexpr (P::soil) {
-              f.soil -= f.soil_response * g;
-              f.exchange = dt * f.drag * (f.water - f.soil);
+              v.soil -= f.soil_response * g;
+              f.exchange = dt * f.drag * (v.water - v.soil);
             }
           }
-          if (P::soil && s.soil_walls.closed(d, face) && f.soil * leaving_direction(s, d, face) <= 0)
-            f.soil = 0;
+          if (P::soil && s.soil_walls.closed(d, face) && v.soil * leaving_direction(s, d, face) <= 0)
+            v.soil = 0;
         }
       });
     });
@@ -315,7 +326,7 @@ void correct_velocities(State<D>& s, double dt) {
           if (s.sums[d][face].water_mass <= 0 && s.constants.kernel != Kernel::linear) continue;
           double v;
           if (extrapolate(s, d, face, level, v)) {
-            f.water = v;
+            s.speeds[d][face].water = v;
             std::atomic_ref(f.wet).store(level, std::memory_order_relaxed);
           }
         }

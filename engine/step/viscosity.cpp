@@ -1,5 +1,7 @@
 // Viscous stress of the water, explicitly, on the faces: ∇·(nτ)/(nρw) ≈ µ/ρw ∇²vw  [FMS19] eq. (2).
 
+#include <algorithm>
+
 #include "engine/step/phases.hpp"
 
 namespace quicksand {
@@ -11,8 +13,10 @@ double old_velocity(const State<D>& s, int d, int face) {
   return f.water_momentum / f.water_mass;
 }
 
-/// Difference of velocity to the neighbour of `face` along `axis`, m/s. A free surface and a slip wall pass
-/// no shear; at a no-slip wall the velocity is mirrored with its sign changed.
+/// Difference of velocity to the neighbour of `face` along `axis`, m/s, times the part of the face's water
+/// that the neighbour has, too: what one gains the other loses, also beside a surface where faces hold
+/// little. A free surface and a slip wall pass no shear; at a no-slip wall the velocity is mirrored with its
+/// sign changed.
 template <int D>
 double difference(const State<D>& s, int d, int face, int axis, int side) {
   const int offset = (2 * side - 1) * s.grid.stride[axis], other = face + offset;
@@ -25,9 +29,10 @@ double difference(const State<D>& s, int d, int face, int axis, int side) {
       if (s.water_walls.closed(axis, wall)) return s.water_walls.no_slip(axis, wall) ? -2 * v : 0;
     }
   }
-  if (s.sums[d][other].water_mass <= kMassCutoff * s.constants.water_density * s.volume.face(d, other))
-    return 0;
-  return old_velocity(s, d, other) - v;
+  const double there = s.sums[d][other].water_mass / s.volume.face(d, other);
+  if (there <= kMassCutoff * s.constants.water_density) return 0;
+  const double here = s.sums[d][face].water_mass / s.volume.face(d, face);
+  return std::min(1.0, there / here) * (old_velocity(s, d, other) - v);
 }
 
 }  // namespace

@@ -16,7 +16,8 @@ using Broken = std::vector<std::string>;
 Broken invariants(const Scene& scene, const RunReport& report, const Recorder& results);
 
 /// Closed forms: "hydrostatic", "fall" or none.
-void check_form(const Scene& scene, const std::string& form, const Recorder& results, Broken& broken);
+void check_form(const Scene& scene, const std::string& form, const RunReport& report, const Recorder& results,
+                Broken& broken);
 
 /// The same bits.
 void check_same(const Recorder& one, const Recorder& other, Broken& broken);

@@ -39,7 +39,7 @@ def similar(case, length, time):
 
     for soil in made["materials"].get("soils", {}).values():
         if "value" in soil.get("permeability", {}):
-            soil["permeability"]["value"] *= length / time
+            soil["permeability"]["value"] *= time  # drag is ρ g/k with standard gravity, whatever the scene's is
     made.setdefault("gravity", [0.0, -9.81] + [0.0] * (axes - 2))
     numerics = made.setdefault("numerics", {})
     if numerics.get("transfer", "flip") == "flip":
@@ -52,10 +52,11 @@ def similar(case, length, time):
     return made
 
 
-# Bounds of the case format on what `similar` multiplies by stress, speed, gravity and length · speed.
+# Bounds of the case format on what `similar` multiplies.
 LIMITS = {"stress": {"young_modulus": (1, 1e13), "bulk_modulus": (1e3, 1e12), "cohesion": (0, 1e12), "traction": (0, 1e12)},
           "rate": {"pic_rate": (0, 1e6), "rotation_rate": (0, 1e6)},
-          "speed": {"value": (1e-14, 10), "velocity": (0, 1e3), "plate_velocity": (0, 1e3)},
+          "time": {"value": (1e-14, 10), "drift_time": (0, 1e6)},
+          "speed": {"velocity": (0, 1e3), "plate_velocity": (0, 1e3)},
           "gravity": {"gravity": (0, 1e4)}, "viscosity": {"viscosity": (0, 1e4)},
           "length": {"cell_size": (9e-7, 1.1e5), "grain_size": (1e-7, 1), "max": (0, 1e7), "head": (0, 1e7)}}
 
@@ -85,10 +86,51 @@ def possible(rng, case):
         length = 2.0 ** round(math.log2(10 ** rng.uniform(-6, 5) / case["domain"]["cell_size"]))
         speed = 2.0 ** round(math.log2(math.sqrt(length)) + rng.uniform(-6, 6))
         factor = {"stress": speed**2, "speed": speed, "gravity": speed**2 / length, "viscosity": speed * length,
-                  "length": length, "rate": speed / length}
+                  "length": length, "rate": speed / length, "time": length / speed}
         if all(low <= factor[kind] * v <= high for kind, low, high, v in found):
             return length, length / speed
     return None
+
+
+def density(case):
+    """Of the heaviest body, kg/m³."""
+    soils, water = case["materials"].get("soils", {}), case["materials"].get("water", {}).get("density", 1000)
+    heaviest = 0
+    for body in case["bodies"]:
+        soil = soils.get(body.get("soil"))
+        dry = (1 - soil["porosity"]) * soil["grain_density"] if soil else 0
+        pores = soil["porosity"] if soil else 1
+        heaviest = max(heaviest, dry + (pores * water if body["kind"] != "soil" else 0))
+    return heaviest
+
+
+MARGIN = 5  # a strain of a fifth
+
+
+def stiffen(case):
+    """Raises moduli below what weight (over the whole scene: things fall), heads, loads and speeds ask for."""
+    low, high = case["domain"]["min"], case["domain"]["max"]
+    fall = sum(abs(g) * (b - a) for g, a, b in zip(case["gravity"], low, high))
+    rho, g = density(case), math.hypot(*case["gravity"])
+    speed = max(math.hypot(*b.get("velocity", [0])) + abs(b.get("rotation_rate", 0)) * max(high) for b in case["bodies"])
+    load = 0
+    for one in case.get("loads", []):
+        load += math.hypot(*one.get("traction", [0]))
+        if "plate_force" in one:
+            wide = one["plate"]["to"][0] - one["plate"]["from"][0]
+            load += math.hypot(*one["plate_force"]) / wide / max(1e-300, high[2] - low[2] if len(high) > 2 else 1)
+    given = max([abs(c) for c in case.get("initial", {}).get("uniform_stress", [0])])
+    least = MARGIN * (rho * (fall + speed**2) + load + given)
+    for soil in case["materials"].get("soils", {}).values():
+        if "young_modulus" in soil["model"]:
+            soil["model"]["young_modulus"] = max(soil["model"]["young_modulus"], float(f"{least:.4g}"))
+    water = case["materials"].get("water", {})
+    if isinstance(water.get("bulk_modulus"), (int, float)):
+        heads = [r["head"] for r in case.get("reservoirs", [])]
+        heads += [h for stage in case.get("stages", []) for h in stage.get("heads", {}).values()]
+        head = water["density"] * g * (max(heads, default=0) - low[1])
+        pressure = abs(case.get("initial", {}).get("uniform_pressure", 0))
+        water["bulk_modulus"] = max(water["bulk_modulus"], float(f"{max(least, MARGIN * head, MARGIN * pressure):.4g}"))
 
 
 def modulus(model, stress, porosity):

@@ -63,7 +63,7 @@ json judge(const json& asked) {
   }
   Broken broken = invariants(scene, done.report, done.results);
   if (done.report.status != RunStatus::failed) {
-    check_form(scene, expected.at("form").get<std::string>(), done.results, broken);
+    check_form(scene, expected.at("form").get<std::string>(), done.report, done.results, broken);
     if (expected.at("threads").get<bool>()) check_same(done.results, compute(scene, 3).results, broken);
     if (const json& twin = expected.at("twin"); !twin.is_null()) {
       const ParsedCase other = parse_case(twin.at("case").dump());

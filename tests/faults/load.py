@@ -3,16 +3,21 @@ in ranges while two runs compute.
 
 usage: load.py QUICKSAND SMALL_CASE [--minutes N] [--runs N] [--megabytes-per-s RATE]
 
-Each poller asks once a second; each download is held to RATE, so that the figures are those of the service and not of
-a machine that is busy with encrypting.
+Clients come and go: times with and without them alternate, so that what else the machine does weighs on both, and the
+runs' speed is compared within each pair. Each client downloads RATE at most. The processor time of runs, service, nginx
+and clients is told apart: clients belong on other machines, so what they themselves take of this one is not counted
+against the service (`less than alone` tells it with and without).
 """
 
 import argparse
-import asyncio
 import contextlib
+import glob
 import json
 import os
+import re
 import sqlite3
+import statistics
+import subprocess
 import sys
 import tempfile
 import time
@@ -21,12 +26,12 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "../server"))
 
 from download import enlarge, resident_mb  # noqa: E402  (the folders are added above)
+from load_clients import SIZE  # noqa: E402
 from nginx_process import NginxProcess  # noqa: E402
 from server_test import make_key  # noqa: E402
 from service_process import ServiceProcess  # noqa: E402
 
-POLLERS, STREAMS, DOWNLOADS = 64, 16, 8
-SIZE, RANGE = 10**9, 16 << 20
+RUN_THREADS = "quicksand-run"
 
 
 def fill_store(server, run_id, count):
@@ -38,93 +43,111 @@ def fill_store(server, run_id, count):
                           [(f"{k:016x}", run_id) for k in range(count - 1)])
 
 
+def thread_seconds(pid):
+    """Processor time of a process by the names of its threads, s; of threads that have ended nothing."""
+    seconds = {}
+    for path in glob.glob(f"/proc/{pid}/task/*/stat"):
+        with contextlib.suppress(OSError), open(path) as file:
+            head, _, rest = file.read().rpartition(")")
+            fields = rest.split()
+            name = head.partition("(")[2]
+            seconds[name] = seconds.get(name, 0) + (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+    return seconds
+
+
+def process_seconds(pid):
+    with open(f"/proc/{pid}/stat") as file:
+        fields = file.read().rpartition(")")[2].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+
+def machine_seconds():
+    """Of everything on this machine."""
+    with open("/proc/stat") as file:
+        user, nice, system, _idle, _wait, irq, softirq = map(int, file.readline().split()[1:8])
+    return (user + nice + system + irq + softirq) / os.sysconf("SC_CLK_TCK")
+
+
+def children(pid):
+    with open(f"/proc/{pid}/task/{pid}/children") as file:
+        return [int(word) for word in file.read().split()]
+
+
 class Load:
-    def __init__(self, nginx, key, ids, large, rate):
-        self.nginx, self.key, self.ids, self.large, self.rate = nginx, key, ids, large, rate
+    """The service with its runs, nginx and the clients."""
+
+    def __init__(self, options, folder):
+        self.server, self.key, done, self.running = prepare(options, folder)
+        self.nginx = NginxProcess(folder + "/nginx", self.server.address.port).start()
+        facts = {"ids": [f"{k:016x}" for k in range(options.runs - 1)], "running": self.running, "large": done,
+                 "rate": options.megabytes_per_s * 1e6}
+        self.clients = {kind: subprocess.Popen(
+            [sys.executable, os.path.join(os.path.dirname(os.path.abspath(__file__)), "load_clients.py"), str(self.nginx.port),
+             folder + "/nginx/cert", self.key, kind, json.dumps(facts)],
+            stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) for kind in ("pollers", "streams", "downloads")}
         self.latencies, self.statuses, self.events, self.bytes = [], {}, 0, 0
-        self.end = 0
+        self.slower, self.without_clients, self.dearer, self.memory, self.seconds = [], [], [], [], {}
 
-    async def connect(self):
-        return await asyncio.open_connection("127.0.0.1", self.nginx.port, ssl=self.nginx.context,
-                                             server_hostname="lab.example", limit=1 << 20)
+    def steps(self):
+        text = self.server.call("GET", "/metrics", headers={"X-API-Key": self.key}).body.decode()
+        return float(re.search(r"^quicksand_steps_total (\S+)", text, re.M)[1])
 
-    async def ask(self, connection, path, headers=""):
-        """Status and length of the body, which is still to be read; None when it ends with the connection."""
-        reader, writer = connection
-        writer.write(f"GET {path} HTTP/1.1\r\nHost: lab.example\r\nX-API-Key: {self.key}\r\n{headers}\r\n".encode())
-        head = (await reader.readuntil(b"\r\n\r\n")).decode()
-        status = int(head.split()[1])
-        self.statuses[status] = self.statuses.get(status, 0) + 1
-        if status in (429, 503):
-            assert "Retry-After" in head, head
-        length = [line.split(": ")[1] for line in head.split("\r\n") if line.lower().startswith("content-length: ")]
-        return status, int(length[0]) if length else None
+    def processor(self):
+        by_thread = thread_seconds(self.server.process.pid)
+        whole = process_seconds(self.server.process.pid)  # with threads that have ended
+        runs = by_thread.get(RUN_THREADS, 0)
+        used = {"runs": runs, "service": whole - runs,
+                "nginx": sum(process_seconds(pid) for pid in [self.nginx.process.pid, *children(self.nginx.process.pid)]),
+                **{kind: process_seconds(process.pid) for kind, process in self.clients.items()}}
+        return {**used, "others": machine_seconds() - sum(used.values())}
 
-    async def poll(self, k):
-        """Over one connection, as a browser or a script does."""
-        await asyncio.sleep(k / POLLERS)
-        connection = await self.connect()
-        n = 0
-        while time.monotonic() < self.end:
-            n += 1
-            begin = time.monotonic()
-            status, length = await self.ask(connection, f"/v1/runs/{self.ids[(k * 77 + n) % len(self.ids)]}")
-            await connection[0].readexactly(length)
-            self.latencies.append(time.monotonic() - begin)
-            assert status in (200, 429, 503), status
-            if n % 900 == 0:  # nginx ends a connection after 1000 requests
-                connection[1].close()
-                connection = await self.connect()
-            await asyncio.sleep(max(0, begin + 1 - time.monotonic()))
-        connection[1].close()
+    def speed(self, doing):
+        """Of the runs together, while `doing` is done: steps per second, and per second of processor time."""
+        first, begin, used = self.steps(), time.monotonic(), thread_seconds(self.server.process.pid)[RUN_THREADS]
+        doing()
+        steps, used = self.steps() - first, thread_seconds(self.server.process.pid)[RUN_THREADS] - used
+        return steps / (time.monotonic() - begin), steps / used
 
-    async def stream(self, run_id):
-        while time.monotonic() < self.end:
-            connection = await self.connect()
-            await self.ask(connection, f"/v1/runs/{run_id}/events")
-            with contextlib.suppress(asyncio.TimeoutError):
-                while time.monotonic() < self.end and (line := await asyncio.wait_for(connection[0].readline(), 20)):
-                    self.events += line.startswith(b"id: ")
-            connection[1].close()
-            await asyncio.sleep(0.5)
+    def with_clients(self, seconds):
+        for process in self.clients.values():
+            process.stdin.write(f"{seconds}\n")
+            process.stdin.flush()
+        for process in self.clients.values():
+            met = json.loads(process.stdout.readline())
+            self.latencies += met["latencies"]
+            for status, count in met["statuses"].items():
+                self.statuses[int(status)] = self.statuses.get(int(status), 0) + count
+            self.events += met["events"]
+            self.bytes += met["bytes"]
 
-    async def download(self, k):
-        at = k * RANGE
-        connection = await self.connect()
-        while time.monotonic() < self.end:
-            begin = time.monotonic()
-            status, length = await self.ask(connection, f"/v1/runs/{self.large}/results/result.vtkhdf",
-                                            f"Range: bytes={at}-{at + RANGE - 1}\r\n")
-            assert status in (206, 429, 503), status
-            assert status != 206 or length == RANGE, length
-            got = 0
-            while got < length:
-                piece = await connection[0].read(min(1 << 18, length - got))
-                assert piece, "cut"
-                got += len(piece)
-                self.bytes += len(piece)
-                await asyncio.sleep(max(0, begin + got / self.rate - time.monotonic()))
-            at = (at + RANGE) % (SIZE - RANGE)
-        connection[1].close()
+    def pair(self, quiet, loaded):
+        """Half of the quiet time before, half after."""
+        alone = self.speed(lambda: time.sleep(quiet / 2))
+        before, begin = self.processor(), time.monotonic()
+        busy = self.speed(lambda: self.with_clients(loaded))
+        used = {name: seconds - before[name] for name, seconds in self.processor().items()}
+        for name, seconds in used.items():
+            self.seconds[name] = self.seconds.get(name, 0) + seconds
+        clients = sum(used[kind] for kind in self.clients) / (time.monotonic() - begin) / os.cpu_count()
+        after = self.speed(lambda: time.sleep(quiet / 2))
+        alone = [(a + b) / 2 for a, b in zip(alone, after)]
+        self.slower.append(1 - busy[0] / alone[0])
+        self.without_clients.append(1 - busy[0] / alone[0] / (1 - clients))
+        self.dearer.append(1 - busy[1] / alone[1])
+        self.memory.append(resident_mb(self.server.process))
+        print(f"  steps/s {alone[0]:.0f} alone, {busy[0]:.0f} with clients: {self.slower[-1]:.1%} less "
+              f"({self.dearer[-1]:.1%} per second of processor time); {self.memory[-1]:.0f} MB", flush=True)
 
-    async def run(self, seconds, running):
-        self.end = time.monotonic() + seconds
-        await asyncio.gather(*(self.poll(k) for k in range(POLLERS)),
-                             *(self.stream(running[k % len(running)]) for k in range(STREAMS)),
-                             *(self.download(k) for k in range(DOWNLOADS)))
-
-
-def steps_per_s(server, key, running, seconds):
-    """Of the runs together, counted over some time."""
-    def steps():
-        return sum(server.call("GET", f"/v1/runs/{i}", headers={"X-API-Key": key}).json()["progress"]["step"] for i in running)
-    first, begin = steps(), time.monotonic()
-    time.sleep(seconds)
-    return (steps() - first) / (time.monotonic() - begin)
+    def stop(self):
+        for process in self.clients.values():
+            process.stdin.close()
+            process.wait(timeout=60)
+        self.nginx.stop()
+        self.server.kill()
 
 
 def prepare(options, folder):
-    """A server with its runs, two of which compute, and nginx in front."""
+    """A server with its runs, two of which compute."""
     server = ServiceProcess(options.quicksand, folder + "/state", ["--workers", "2", "--set", "short_workers=0", "--threads", "1"])
     key = make_key(server.state, "root", "admin")
     headers = {"X-API-Key": key}
@@ -147,6 +170,23 @@ def prepare(options, folder):
     return server, key, done, running
 
 
+def report(load, seconds):
+    latencies = sorted(load.latencies)
+    p99 = latencies[len(latencies) * 99 // 100]
+    slower = statistics.median(load.without_clients)
+    print(f"{len(latencies)} polls in {seconds:.0f} s: median {latencies[len(latencies) // 2] * 1000:.1f} ms, "
+          f"p99 {p99 * 1000:.1f} ms [50]; answers {dict(sorted(load.statuses.items()))}")
+    print(f"{load.events} events, {load.bytes / 1e6 / seconds:.0f} MB/s downloaded, memory {load.memory[0]:.0f} MB at first, "
+          f"{load.memory[-1]:.0f} MB at the end, {max(load.memory):.0f} MB at most [200]")
+    print(f"steps/s of the runs with clients: {slower:.1%} less than alone, without what the clients take (median of "
+          f"{len(load.slower)} pairs, {min(load.without_clients):.1%} to {max(load.without_clients):.1%}) [10 %]; "
+          f"{statistics.median(load.slower):.1%} with it; per second of processor time {statistics.median(load.dearer):.1%} less")
+    print("processors busy with: " + ", ".join(f"{name} {used / seconds:.3f}" for name, used in load.seconds.items())
+          + f" of {os.cpu_count()}")
+    assert set(load.statuses) <= {200, 206, 429, 503}, load.statuses
+    assert p99 < 0.05 and max(load.memory) < 200 and slower < 0.1
+
+
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("quicksand")
@@ -156,39 +196,16 @@ def main():
     parser.add_argument("--megabytes-per-s", type=float, default=5)
     options = parser.parse_args()
     with tempfile.TemporaryDirectory(prefix="quicksand-load-") as folder:
-        server, key, large, running = prepare(options, folder)
-        nginx = NginxProcess(folder + "/nginx", server.address.port).start()
+        load = Load(options, folder)
         try:
-            alone = steps_per_s(server, key, running, 10)
-            ids = [f"{k:016x}" for k in range(options.runs - 1)]
-            load = Load(nginx, key, ids, large, options.megabytes_per_s * 1e6)
-            memory = [resident_mb(server.process)]
-            seconds = options.minutes * 60
-            first = sum(progress(server, key, i) for i in running)
-            begin = time.monotonic()
-            asyncio.run(load.run(seconds, running))
-            loaded = (sum(progress(server, key, i) for i in running) - first) / (time.monotonic() - begin)
-            memory.append(resident_mb(server.process))
-            report(load, alone, loaded, memory, seconds)
+            time.sleep(5)  # first checkpoints and allocations are over
+            pairs = max(2, round(options.minutes))
+            each = options.minutes * 60 / pairs
+            for _ in range(pairs):
+                load.pair(each / 10, each)
+            report(load, pairs * each)
         finally:
-            nginx.stop()
-            server.kill()
-
-
-def progress(server, key, run_id):
-    return server.call("GET", f"/v1/runs/{run_id}", headers={"X-API-Key": key}).json()["progress"]["step"]
-
-
-def report(load, alone, loaded, memory, seconds):
-    latencies = sorted(load.latencies)
-    p99 = latencies[len(latencies) * 99 // 100]
-    slower = 1 - loaded / alone
-    print(f"{len(latencies)} polls in {seconds:.0f} s: median {latencies[len(latencies) // 2] * 1000:.1f} ms, "
-          f"p99 {p99 * 1000:.1f} ms [50]; answers {dict(sorted(load.statuses.items()))}")
-    print(f"{load.events} events, {load.bytes / 1e6 / seconds:.0f} MB/s downloaded, memory {memory[0]:.0f} MB before and "
-          f"{memory[1]:.0f} MB after [200], steps/s {alone:.0f} alone and {loaded:.0f} under load: {slower:.1%} less [10 %]")
-    assert set(load.statuses) <= {200, 206, 429, 503}, load.statuses
-    assert p99 < 0.05 and max(memory) < 200 and slower < 0.1
+            load.stop()
 
 
 if __name__ == "__main__":

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "engine/results/checkpoint_file.hpp"
+#include "engine/run/engine_build.hpp"
 #include "server/files.hpp"
 #include "server/run_json.hpp"
 #include "tests/server/temporary_folder.hpp"
@@ -62,6 +64,39 @@ TEST(Execute, CancelsWithinOneStep) {
   const Execution done = execute(small_case(), {}, folder.path().string(), monitor, {});
   EXPECT_EQ(done.report.status, RunStatus::canceled);
   EXPECT_LE(monitor.steps, 4);
+}
+
+/// Suspends a run after some steps; keeps what is said.
+class SuspendingMonitor final : public RunMonitor {
+ public:
+  explicit SuspendingMonitor(long after) : after_(after) {}
+  void progress(const Progress&) override { ++steps_; }
+  void log(const std::string& line) override { words += line + "\n"; }
+  bool suspended() override { return after_ >= 0 && steps_ >= after_; }
+  std::string words;
+
+ private:
+  long after_, steps_ = 0;
+};
+
+TEST(Execute, ACheckpointOfAnotherBuildIsOfNoUse) {
+  const TemporaryFolder folder;
+  SuspendingMonitor first(200);
+  EXPECT_EQ(execute(small_case(), {}, folder.path().string(), first, {}).report.status, RunStatus::suspended);
+  const auto file = folder.path() / "checkpoint";
+  StoredCheckpoint stored = read_checkpoint(file);
+  ASSERT_NE(stored.identity.find(engine_build()), std::string::npos);
+  stored.identity.replace(stored.identity.find(engine_build()), 1, "x");
+  remove_checkpoints(folder.path());
+  store_checkpoint(folder.path(), stored);
+  SuspendingMonitor required(-1);
+  const Execution refused = execute(small_case(), {}, folder.path().string(), required, {}, Resume::required);
+  EXPECT_EQ(refused.report.failure.code, "no_checkpoint");
+  SuspendingMonitor second(-1);
+  const Execution done = execute(small_case(), {}, folder.path().string(), second, {}, Resume::if_possible);
+  EXPECT_EQ(done.report.status, RunStatus::succeeded);
+  EXPECT_NE(second.words.find("another case or build"), std::string::npos) << second.words;
+  EXPECT_EQ(second.words.find("resumed at"), std::string::npos) << second.words;
 }
 
 }  // namespace

@@ -23,7 +23,6 @@ class NginxProcess:
 
     def __init__(self, folder, upstream):
         self.folder, self.upstream, self.process = folder, upstream, None
-        self.plain, self.port = free_ports(2)
         os.makedirs(folder)
 
     def start(self):
@@ -31,16 +30,24 @@ class NginxProcess:
                         "-addext", "subjectAltName=DNS:lab.example", "-keyout", self.folder + "/key",
                         "-out", self.folder + "/cert"], check=True, capture_output=True)
         self.context = ssl.create_default_context(cafile=self.folder + "/cert")
-        self.configure()
-        self.process = subprocess.Popen(["nginx", "-p", self.folder, "-c", "main.conf", "-e", "error.log"])
-        deadline = time.monotonic() + 10
-        while True:
-            try:
-                socket.create_connection(("127.0.0.1", self.port)).close()
+        for _ in range(5):
+            self.plain, self.port = free_ports(2)
+            self.configure()
+            if self.listens():
                 return self
-            except ConnectionRefusedError:
-                assert time.monotonic() < deadline and self.process.poll() is None, "nginx does not start"
-                time.sleep(0.05)
+        raise AssertionError("nginx does not start")
+
+    def listens(self):
+        """False when somebody else took a port meanwhile: any connection on this machine may."""
+        self.process = subprocess.Popen(["nginx", "-p", self.folder, "-c", "main.conf", "-e", "error.log"],
+                                        stderr=subprocess.DEVNULL)
+        deadline = time.monotonic() + 30
+        while self.process.poll() is None:
+            if os.path.exists(self.folder + "/pid"):  # written once it has its ports
+                return True
+            assert time.monotonic() < deadline, "nginx does not listen"
+            time.sleep(0.05)
+        return False
 
     def stop(self):
         self.process.send_signal(signal.SIGTERM)

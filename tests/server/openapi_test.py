@@ -216,10 +216,12 @@ class DocumentedIsServedTest(DocumentTest):
 
     def ask_a_server_without_room(self, run):
         self.server.stop()
-        self.server.options = ["--set", "max_readers=0"]
+        self.server.options = ["--set", "max_readers=0", "--set", "max_downloads=0"]
         self.server.start()
         self.ask("get", "/v1/runs/{id}/frames/{k}", 503, id=run, k=0)
         self.ask("get", "/v1/runs/{id}/series", 503, id=run)
+        self.ask("get", "/v1/runs/{id}/log", 503, id=run)
+        self.ask("get", "/v1/runs/{id}/results/{file}", 503, id=run, file="run.json")
 
 
 class ServedIsDocumentedTest(DocumentTest):

@@ -29,12 +29,13 @@ class ServiceProcess:
         self.process = None
         self.url = None
         self.log_folder = os.path.dirname(state)
+        self.environment = {}  # besides this process's own
 
     def start(self):
         log = open(os.path.join(self.log_folder, "server.log"), "a")
         self.process = subprocess.Popen(
             [self.executable, "serve", "--port", "auto", "--state", self.state, *self.options],
-            stdout=subprocess.PIPE, stderr=log, text=True)
+            stdout=subprocess.PIPE, stderr=log, text=True, env={**os.environ, **self.environment})
         log.close()
         line = self.process.stdout.readline()
         assert " serves http" in line, f"no address on the first line: {line!r}"

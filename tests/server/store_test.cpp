@@ -209,6 +209,31 @@ TEST_F(StoreTest, AnOrderlyStopCostsNoRetry) {
   EXPECT_EQ(store_.find(id)->retries, 0);
 }
 
+TEST_F(StoreTest, ARunThatWaitsForTheDiskSaysSoUntilItGoesOn) {
+  const std::string id = queue("a");
+  store_.claim_next();
+  store_.requeue(id, Failure{"disk_full", "the disk is full", 2, {}});
+  EXPECT_EQ(state(id), RunState::queued);
+  EXPECT_EQ(store_.find(id)->failure->code, "disk_full");
+  EXPECT_EQ(store_.find(id)->failure->time, 2);
+  EXPECT_FALSE(store_.claim_next()->failure);
+  store_.requeue(id, Failure{"read_only", "", 0, {}});
+  store_.request_cancel(id);
+  EXPECT_EQ(state(id), RunState::canceled);
+  EXPECT_FALSE(store_.find(id)->failure);
+}
+
+TEST_F(StoreTest, ResultsCanBeAddedToAnEndedRun) {
+  const std::string id = queue("a");
+  store_.add_results(id, {{"run.json", 3, "abc"}});  // not yet
+  EXPECT_TRUE(store_.results(id).empty());
+  store_.request_cancel(id);
+  const long long revision = store_.find(id)->revision;
+  store_.add_results(id, {{"run.json", 3, "abc"}});
+  EXPECT_EQ(store_.results(id).size(), 1U);
+  EXPECT_GT(store_.find(id)->revision, revision);
+}
+
 TEST_F(StoreTest, ACanceledRunIsNotQueuedAgain) {
   const std::string id = queue("a");
   store_.claim_next();

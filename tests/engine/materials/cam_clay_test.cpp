@@ -114,10 +114,10 @@ TEST(CamClay, TheLeastPressureIsHeldAndCounted) {
   const CamClayLaw clay = law();
   SoilState<3> s;  // no stress at all
   EXPECT_EQ(clay.begin(s), 1);
-  EXPECT_EQ(pressure(s), CamClayLaw::kLeastPressure);
+  EXPECT_EQ(pressure(s), CamClayLaw{}.least_pressure);
   double n = kPorosity;
   EXPECT_EQ(strain(clay, s, n, {0.1, 0.1, 0.1, 0, 0, 0}), 1);
-  EXPECT_EQ(pressure(s), CamClayLaw::kLeastPressure);
+  EXPECT_EQ(pressure(s), CamClayLaw{}.least_pressure);
   EXPECT_LE(yield(s), 1e-9);
   for (int i = 0; i < 1000; ++i) strain(clay, s, n, {-1e-3, -1e-3, -1e-3, 0, 0, 0});
   EXPECT_GT(pressure(s), 100);  // stiffens again

@@ -129,6 +129,26 @@ TEST_F(CheckpointTest, ANewRunForgetsThoseOfAnother) {
   EXPECT_TRUE(checkpoint_files(folder_).empty());
 }
 
+TEST_F(CheckpointTest, WhatIsLeftBehindBecomesTheResults) {
+  EXPECT_FALSE(finish_result_files(folder_.string()));
+  {
+    ResultFile left(folder_.string(), documents_);
+    left.begin(known::series());
+    write(left, 0, 2);
+  }
+  EXPECT_TRUE(finish_result_files(folder_.string()));
+  const h5_read::File file((folder_ / "result.vtkhdf").string());
+  EXPECT_EQ(column(file, "/frames/000001/position"), known::frame(1).position);
+  EXPECT_TRUE(fs::exists(folder_ / "result.xdmf"));
+}
+
+TEST_F(CheckpointTest, WhatCannotBeOpenedDoesNot) {
+  { ResultFile left(folder_.string(), documents_); }
+  fs::resize_file(folder_ / "result.vtkhdf.part", 100);
+  EXPECT_FALSE(finish_result_files(folder_.string()));
+  EXPECT_FALSE(fs::exists(folder_ / "result.vtkhdf"));
+}
+
 TEST_F(CheckpointTest, MissingResultsAreSaid) {
   const StoredCheckpoint from{run_identity(documents_), "", after(1)};
   EXPECT_THROW(ResultFile(folder_.string(), documents_, &from), std::runtime_error);

@@ -27,6 +27,25 @@ TEST(Check, OriginsThatAreNotRoundDoNotMatter) {
   EXPECT_EQ(faults_of(s), Pointers{});
 }
 
+/// Moduli below the weight that they bear: soil of 2.9 kPa (under water), water of 5.9 kPa.
+TEST(Check, WhatItsOwnWeightWouldCrushIsRefused) {
+  const auto with_soil = [](double young) {
+    return after([young](Scene& s) { s.soils["sand"].model.young_modulus = young; });
+  };
+  EXPECT_EQ(with_soil(3000), Pointers{});
+  EXPECT_EQ(with_soil(2800), Pointers{"/materials/soils/sand/model/young_modulus"});
+  const auto with_water = [](double bulk) {
+    return after([bulk](Scene& s) { s.water.bulk_modulus = bulk; });
+  };
+  EXPECT_EQ(with_water(6000), Pointers{});
+  EXPECT_EQ(with_water(5800), Pointers{"/materials/water/bulk_modulus"});
+  EXPECT_EQ(after([](Scene& s) {
+              s.water.bulk_modulus = 5800;
+              s.gravity = {0, -1, 0};
+            }),
+            Pointers{});
+}
+
 TEST(Check, EmptyAndOversizedGrids) {
   EXPECT_EQ(after([](Scene& s) { s.domain.cell_size = 0; }), Pointers{"/domain/cell_size"});
   EXPECT_EQ(after([](Scene& s) { s.domain.max[0] = 0; }), Pointers{"/domain/max"});

@@ -109,10 +109,11 @@ TEST(DragExchange, FacesExchangeOneImpulse) {
   for (int d = 0; d < 2; ++d)
     for (int i = 0; i < s.grid.count(); ++i) {
       const FaceFlow& f = s.flow[d][i];
+      const FaceSpeeds& v = s.speeds[d][i];
       const FaceSums& sums = s.sums[d][i];
       if (f.wet != 1 || sums.soil_mass == 0) continue;
-      const double soil = sums.soil_mass * (f.soil - f.soil_old);
-      const double water = sums.water_mass * (f.water - f.water_old);
+      const double soil = sums.soil_mass * (v.soil - v.soil_old);
+      const double water = sums.water_mass * (v.water - v.water_old);
       const double pressure = -dt * (sums.grains + sums.water_mass / 1000) * pressure_gradient(s, d, i);
       EXPECT_NEAR(soil + water, pressure, 1e-12 * sums.soil_mass * 1e-3);
       largest = std::max(largest, soil);

@@ -261,7 +261,7 @@ TEST(LinearKernel, LightFacesMoveWithTheirNeighbours) {
     sum += s.sums[0][face].soil_mass;
     if (s.follower[0][face].leader == 0) continue;
     ++light;
-    const FaceFlow &f = s.flow[0][face], &leader = s.flow[0][leader_of(s, 0, face)];
+    const FaceSpeeds &f = s.speeds[0][face], &leader = s.speeds[0][leader_of(s, 0, face)];
     EXPECT_EQ(s.sums[0][face].soil_mass, 0);
     EXPECT_EQ(f.soil, f.soil_old + leader.soil - leader.soil_old);
   }
