@@ -36,6 +36,18 @@ template <int N>
 QUICKSAND_INLINE Lanes<N> lanes_from(const double& first) {
   return reinterpret_cast<const typename LanesOf<N>::anywhere&>(first);
 }
+/// The first `count` of eight doubles, and zeros: what lies behind them is not touched.
+QUICKSAND_INLINE Lanes<8> some_lanes_from(const double* first, int count) {
+  if (count >= 8) return lanes_from<8>(*first);
+#ifdef __AVX512F__
+  const auto mask = static_cast<__mmask8>(count > 0 ? (1u << count) - 1 : 0);
+  return reinterpret_cast<Lanes<8>>(_mm512_maskz_loadu_pd(mask, first));
+#else
+  Lanes<8> v{};
+  for (int k = 0; k < count; ++k) v[k] = first[k];
+  return v;
+#endif
+}
 template <int N>
 QUICKSAND_INLINE void put_lanes(double& first, const Lanes<N>& v) {
   reinterpret_cast<typename LanesOf<N>::anywhere&>(first) = v;

@@ -159,7 +159,7 @@ void MohrCoulombLaw::yield(double cohesion, SoilState<D>& state) const {
   const MohrCoulombReturn r = return_map(now, elastic, trial.value);
   if (r.region == YieldRegion::elastic) return;
   state.stress = with_values(trial, r.stress);
-  state.plastic_strain += std::sqrt(2.0 / 3.0 * contracted(deviator(r.plastic_strain)));
+  state.plastic_strain += plastic_shear(r);
 }
 
 template void MohrCoulombLaw::yield<2>(double, SoilState<2>&) const;

@@ -28,6 +28,10 @@ struct MohrCoulombReturn {
   std::array<double, 3> plastic_strain;  ///< –, principal increments
   YieldRegion region;
 };
+/// √(2/3 e:e) of the plastic strain's deviator e.
+inline double plastic_shear(const MohrCoulombReturn& r) {
+  return std::sqrt(2.0 / 3.0 * contracted(deviator(r.plastic_strain)));
+}
 
 /// Implicit return in principal stress space: onto the face σ1–σ3, else onto the edge where two faces
 /// meet, else to the apex c·cot φ. With linear faces each return is exact in one step. Planes of largest
@@ -86,26 +90,12 @@ struct MohrCoulombLaw {
   int update(SoilState<D>& state, const Strain<D>& strain, double /*porosity*/) const {
     state.stress = elastic.stretched(state.stress, strain);
     const double c = cohesion(state.plastic_strain);
-    if (!may_yield<D>(c, state)) return 0;
-    if (D != 2 || !return_to_face<D>(c, true, state)) yield(c, state);
+    if (may_yield<D>(c, state)) yield(c, state);
     return 0;
   }
   template <int D>
-  QUICKSAND_INLINE int update_batch(SoilState<D, BatchLanes>& state, const Strain<D, BatchLanes>& strain,
-                                    const BatchLanes& /*porosity*/, int count) const {
-    state.stress = elastic.stretched(state.stress, strain);
-    const BatchLanes c = cohesion(state.plastic_strain);
-    auto left = may_yield<D>(c, state);
-    if (!any_of(left, count)) return 0;
-    if constexpr (D == 2) left &= ~return_to_face<D>(c, left, state);
-    for (int k = 0; k < count; ++k)
-      if (left[k]) {
-        SoilState<D> one = lane_of(state, k);
-        yield(c[k], one);
-        set_lane(state, k, one);
-      }
-    return 0;
-  }
+  int update_batch(SoilState<D, BatchLanes>& state, const Strain<D, BatchLanes>& strain,
+                   const BatchLanes& porosity, int count) const;
   template <int D>
   double energy(const SoilState<D>& state, double /*porosity*/) const {
     return elastic.energy(state.stress);
@@ -118,32 +108,6 @@ struct MohrCoulombLaw {
     const PrincipalBounds<T> s = principal_bounds<D>(state.stress);
     return (s.largest * (1 + peak.sin_phi) - s.smallest * (1 - peak.sin_phi) > 2 * peak.cos_phi * c) |
            (s.largest > peak.tension);
-  }
-  /// Does what `yield` does where `trial` is true and the return ends on the face σ1–σ3; says where it did.
-  template <int D, class T, class Mask>
-  QUICKSAND_INLINE auto return_to_face(const T& c, const Mask& trial, SoilState<D, T>& state) const {
-    Stress<D, T>& s = state.stress;
-    const T mean = 0.5 * (s[0] + s[1]), half = 0.5 * (s[0] - s[1]), z = s[2];
-    const T radius = square_root(half * half + s[3] * s[3]), larger = mean + radius, smaller = mean - radius;
-    const auto z_first = z >= larger, z_last = z < smaller;
-    const T s1 = where(z_first, z, larger), s3 = where(z_last, z, smaller);
-    const T s2 = where(z_first, larger, where(z_last, smaller, z));
-    const T gamma =
-        face.compliance * (s1 * (1 + peak.sin_phi) - s3 * (1 - peak.sin_phi) - 2 * peak.cos_phi * c);
-    const T b1 = s1 - gamma * face.drop[0], b2 = s2 - gamma * face.drop[1], b3 = s3 - gamma * face.drop[2];
-    auto on_face = trial & (gamma > 0) & (b1 >= b2) & (b2 >= b3) & (b1 <= peak.tension);
-    if (peak.sin_phi > 0) on_face = on_face & (b3 * peak.sin_phi <= peak.cos_phi * c);
-    const T new_larger = where(z_first, b2, b1), new_smaller = where(z_last, b2, b3);
-    const T new_mean = 0.5 * (new_larger + new_smaller), new_radius = 0.5 * (new_larger - new_smaller);
-    const auto round = radius > 0;
-    const T inverse = 1.0 / where(round, radius, all_lanes<T>(1));
-    const T cos2 = where(round, half * inverse, all_lanes<T>(1)), sin2 = s[3] * inverse;
-    s[0] = where(on_face, new_mean + new_radius * cos2, s[0]);
-    s[1] = where(on_face, new_mean - new_radius * cos2, s[1]);
-    s[2] = where(on_face, where(z_first, b1, where(z_last, b3, b2)), z);
-    s[3] = where(on_face, new_radius * sin2, s[3]);
-    state.plastic_strain = where(on_face, state.plastic_strain + gamma * face.shear, state.plastic_strain);
-    return on_face;
   }
   /// Brings a trial stress back, if it yields.
   template <int D>

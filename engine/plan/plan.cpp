@@ -125,6 +125,14 @@ double frames_held(const Scene& scene, double dt) {
   return std::min(most, std::floor(steps_between_good_states / steps_between_frames));
 }
 
+/// State::keeps_flow, as far as it is known before the run.
+bool keeps_flow(const Scene& scene, bool water) {
+  const auto damps = [](const Stage& stage) { return stage.damping > 0; };
+  const auto is_plate = [](const Load& load) { return load.kind != Load::Kind::traction; };
+  return water || std::any_of(scene.stages.begin(), scene.stages.end(), damps) ||
+         std::any_of(scene.loads.begin(), scene.loads.end(), is_plate);
+}
+
 template <int D>
 Memory measure(const Scene& scene, Plan& plan) {
   const Grid<D> grid = make_grid<D>(scene);
@@ -139,12 +147,12 @@ Memory measure(const Scene& scene, Plan& plan) {
       affine + 3 * sizeof(Vec<D>) + sizeof(Stress<D>) + 3 * sizeof(double) + 2 * sizeof(int) + 8;
   const double per_water = affine + 3 * sizeof(Vec<D>) + sizeof(double) + sizeof(int) + 8;
   const double fixed = points.fixed ? D * sizeof(FixedFace) + sizeof(CellSums) : 0;
-  const double per_active_cell =
-      follower + fixed + D * (sizeof(FaceSums) + sizeof(FaceImage) + sizeof(FaceFlow) + sizeof(FaceSpeeds)) +
-      sizeof(CellSums) + sizeof(CellState) + 2 * sizeof(double);
+  const double flow = keeps_flow(scene, plan.has_water) ? sizeof(FaceFlow) : 0;
+  const double per_active_cell = follower + fixed +
+                                 D * (sizeof(FaceSums) + sizeof(FaceImage) + flow + sizeof(FaceSpeeds)) +
+                                 sizeof(CellSums) + sizeof(CellState) + 2 * sizeof(double);
   const double kept_per_active_cell =  // of the last good state
-      follower + D * (sizeof(FaceFlow) + sizeof(FaceSpeeds) + 1) + sizeof(CellSums) + sizeof(CellState) +
-      sizeof(double);
+      follower + D * (flow + sizeof(FaceSpeeds) + 1) + sizeof(CellSums) + sizeof(CellState) + sizeof(double);
   // Flags of walls, for water and for grains, and volumes about an axis.
   const double per_cell = 2 * (5 * D + 1 + sizeof(int)) + (grid.axial ? (D + 1) * sizeof(double) : 0);
   const double points_bytes = per_soil * static_cast<double>(plan.soil_points + plan.fixed_soil_points) +

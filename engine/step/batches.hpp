@@ -10,16 +10,16 @@ namespace quicksand {
 
 namespace batch {
 
-/// v[i][k] = first[n k + i], by shuffles of registers.
+/// v[i][k] = first[n k + i] for k < count, else 0; by shuffles of registers.
 template <int n>
-QUICKSAND_INLINE std::array<BatchLanes, n> columns(const double* first) {
-  std::array<BatchLanes, n> column;
+QUICKSAND_INLINE std::array<BatchLanes, n> columns(const double* first, int count) {
+  std::array<BatchLanes, n> part, column;
+  for (int m = 0; m < n; ++m) part[m] = some_lanes_from(first + m * kBatch, n * count - m * kBatch);
   const auto merge = [&]<int i, int m, int... k>(
       std::integral_constant<int, i>, std::integral_constant<int, m>, std::integer_sequence<int, k...>)
       __attribute__((always_inline)) {
-    const BatchLanes part = lanes_from<kBatch>(first[m * kBatch]);
     // Lane k is entry n k + i of all: in part m or in another.
-    column[i] = __builtin_shufflevector(m == 0 ? part : column[i], part,
+    column[i] = __builtin_shufflevector(m == 0 ? part[m] : column[i], part[m],
                                         ((n * k + i) / kBatch == m ? kBatch + (n * k + i) % kBatch : k)...);
   };
   const auto merge_all = [&]<int... im>(std::integer_sequence<int, im...>) __attribute__((always_inline)) {
@@ -33,19 +33,18 @@ QUICKSAND_INLINE std::array<BatchLanes, n> columns(const double* first) {
 
 }  // namespace batch
 
-/// Some points of one cell. Lanes beyond `count` hold some point's values.
+/// Some points of one cell. Lanes beyond `count` hold zeros or the first one's values.
 template <int D>
 struct PointBatch {
   int count = 0;
   std::array<std::uint32_t, kBatch> point;
-  bool in_a_row = false;  ///< one after the other in memory, with others behind them up to a full batch
+  bool in_a_row = false;  ///< one after the other in memory
 
   PointBatch(const BlockList& list, PointRange range) {
     count = static_cast<int>(std::min<std::uint32_t>(kBatch, range.end - range.begin));
     const std::uint32_t* from = &list.order[range.begin];
     for (int k = 0; k < kBatch; ++k) point[k] = from[k < count ? k : 0];
-    in_a_row = from[count - 1] - from[0] == static_cast<std::uint32_t>(count - 1) &&
-               from[0] + kBatch <= list.order.size();
+    in_a_row = from[count - 1] - from[0] == static_cast<std::uint32_t>(count - 1);
   }
   /// v in the lanes of these points, else 0.
   QUICKSAND_INLINE BatchLanes only(const BatchLanes& v) const {
@@ -54,7 +53,7 @@ struct PointBatch {
   }
   /// Of an array of numbers.
   QUICKSAND_INLINE BatchLanes get(const std::vector<double>& from) const {
-    if (in_a_row) return lanes_from<kBatch>(from[point[0]]);
+    if (in_a_row) return some_lanes_from(&from[point[0]], count);
     BatchLanes v;
     for (int k = 0; k < kBatch; ++k) v[k] = from[point[k]];
     return v;
@@ -65,7 +64,7 @@ struct PointBatch {
   /// Of an array of vectors, component by component.
   template <std::size_t n>
   QUICKSAND_INLINE std::array<BatchLanes, n> get(const std::vector<std::array<double, n>>& from) const {
-    if (in_a_row) return batch::columns<static_cast<int>(n)>(from[point[0]].data());
+    if (in_a_row) return batch::columns<static_cast<int>(n)>(from[point[0]].data(), count);
     std::array<BatchLanes, n> v;
     for (int k = 0; k < kBatch; ++k)
       for (std::size_t i = 0; i < n; ++i) v[i][k] = from[point[k]][i];

@@ -1,0 +1,56 @@
+// The law for several points at once. Most returns end on the face σ1–σ3, for which there is a closed form;
+// what is left goes through return_map one by one.
+
+#include "engine/materials/mohr_coulomb.hpp"
+#include "engine/materials/principal_lanes.hpp"
+
+namespace quicksand {
+
+template <int D>
+int MohrCoulombLaw::update_batch(SoilState<D, BatchLanes>& state, const Strain<D, BatchLanes>& strain,
+                                 const BatchLanes& /*porosity*/, int count) const {
+  state.stress = elastic.stretched(state.stress, strain);
+  const BatchLanes c = cohesion(state.plastic_strain);
+  const auto yields = may_yield<D>(c, state);
+  if (!any_of(yields, count)) return 0;
+
+  const PrincipalLanes<D> principal(state.stress);
+  const auto& [a, b, z] = principal.value;
+  const BatchLanes low = where(a < b, a, b), high = where(a < b, b, a);
+  const BatchLanes s1 = where(z > high, z, high), s3 = where(z < low, z, low);
+  const BatchLanes s2 = clamped<BatchLanes>(z, low, high);
+  const BatchLanes gamma =
+      face.compliance * (s1 * (1 + peak.sin_phi) - s3 * (1 - peak.sin_phi) - 2 * peak.cos_phi * c);
+  BatchLanes r1 = s1 - gamma * face.drop[0], r2 = s2 - gamma * face.drop[1], r3 = s3 - gamma * face.drop[2];
+  auto returned = yields & (gamma > 0) & (r1 >= r2) & (r2 >= r3) & (r1 <= peak.tension);
+  if (peak.sin_phi > 0) returned &= r3 * peak.sin_phi <= peak.cos_phi * c;
+  state.plastic_strain += where(returned, gamma * face.shear, BatchLanes{});
+
+  MohrCoulomb now = peak;
+  for (int k = 0; k < count; ++k) {
+    if (!yields[k] || returned[k]) continue;
+    now.cohesion = c[k];
+    const MohrCoulombReturn r = return_map(now, elastic, {s1[k], s2[k], s3[k]});
+    if (r.region == YieldRegion::elastic) continue;
+    r1[k] = r.stress[0], r2[k] = r.stress[1], r3[k] = r.stress[2];
+    state.plastic_strain[k] += plastic_shear(r);
+    returned[k] = -1;
+  }
+  // Where two values are one, so are those that they return to.
+  std::array<BatchLanes, 3> values;
+  for (int i = 0; i < 3; ++i) {
+    const BatchLanes& v = principal.value[i];
+    values[i] = where(v >= s1, r1, where(v <= s3, r3, r2));
+  }
+  const Stress<D, BatchLanes> stress = principal.with(values);
+  for (std::size_t i = 0; i < stress.size(); ++i)
+    state.stress[i] = where(returned, stress[i], state.stress[i]);
+  return 0;
+}
+
+template int MohrCoulombLaw::update_batch<2>(SoilState<2, BatchLanes>&, const Strain<2, BatchLanes>&,
+                                             const BatchLanes&, int) const;
+template int MohrCoulombLaw::update_batch<3>(SoilState<3, BatchLanes>&, const Strain<3, BatchLanes>&,
+                                             const BatchLanes&, int) const;
+
+}  // namespace quicksand

@@ -1,0 +1,117 @@
+// Soil points updated in lanes end where they end alone, whichever way back from beyond yield they take.
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "engine/materials/principal_lanes.hpp"
+#include "engine/materials/soil_material.hpp"
+
+namespace quicksand {
+namespace {
+
+SoilMaterial material(const SoilModel& model) {
+  Soil soil;
+  soil.model = model;
+  return SoilMaterial::from(soil, Water{});
+}
+
+constexpr double kStep = 1e-3;  // s
+std::mt19937 random_numbers(7);
+double any(double reach) { return std::uniform_real_distribution<double>(-reach, reach)(random_numbers); }
+
+/// A stress of which some components are zero or equal, as in soil at rest.
+template <int D>
+SoilState<D> some_state(int kind) {
+  SoilState<D> state;
+  for (std::size_t i = 0; i < state.stress.size(); ++i)
+    state.stress[i] = i < 3 ? -5e4 + any(4e4) : kind == 0 ? 0 : any(2e4);
+  if (kind == 0) state.stress[2] = state.stress[0];
+  if (kind == 1) state.stress = {};
+  state.plastic_strain = std::abs(any(0.05));
+  state.preconsolidation = 2e5;
+  return state;
+}
+
+template <int D>
+void expect_lanes_agree(const std::array<SoilMaterial, 2>& soils, double rate) {
+  int yielded = 0;
+  for (int trial = 0; trial < 200; ++trial) {
+    std::array<const SoilMaterial*, kBatch> soil;
+    std::array<SoilState<D>, kBatch> alone;
+    SoilState<D, BatchLanes> lanes;
+    Gradient<D, BatchLanes> l;
+    BatchLanes n;
+    const int count = 1 + trial % kBatch;
+    for (int k = 0; k < kBatch; ++k) {
+      soil[k] = &soils[trial % 3 == 0 ? k % 2 : 0];
+      alone[k] = some_state<D>(trial % 4);
+      set_lane(lanes, k, alone[k]);
+      n[k] = 0.4 + any(0.05);
+      Gradient<D> gradient;
+      for (int i = 0; i < D; ++i)
+        for (int j = 0; j < D; ++j) l[i][j][k] = gradient[i][j] = any(rate);
+      if (k < count) update_state<D>(*soil[k], alone[k], n[k], gradient, kStep);
+    }
+    update_states<D>(soil, count, lanes, n, l, kStep, BatchLanes{});
+    for (int k = 0; k < count; ++k) {
+      const SoilState<D> one = lane_of(lanes, k);
+      double size = 1e3;
+      for (const double c : alone[k].stress) size = std::max(size, std::abs(c));
+      for (std::size_t i = 0; i < one.stress.size(); ++i)
+        ASSERT_NEAR(one.stress[i], alone[k].stress[i], 1e-9 * size) << "trial " << trial << " lane " << k;
+      ASSERT_NEAR(one.plastic_strain, alone[k].plastic_strain, 1e-10);
+      ASSERT_NEAR(one.preconsolidation, alone[k].preconsolidation, 1e-6);
+      yielded += one.plastic_strain > 0.051;
+    }
+  }
+  if (rate > 1) {
+    EXPECT_GT(yielded, 100);
+  }
+}
+
+TEST(Batch, LanesEndWherePointsAloneDo) {
+  SoilModel sand{
+      .law = SoilLaw::mohr_coulomb, .young_modulus = 1e7, .poisson_ratio = 0.3, .friction_angle = 30};
+  sand.dilation_angle = 5;
+  SoilModel clay = sand;
+  clay.friction_angle = 20, clay.dilation_angle = 0, clay.cohesion = 1e4, clay.tension_cutoff = 2e3;
+  SoilModel softening = clay;
+  softening.residual_cohesion = 1e3, softening.softening_strain = 0.04;
+  SoilModel undrained = clay;
+  undrained.friction_angle = 0, undrained.tension_cutoff.reset();
+  SoilModel elastic{.law = SoilLaw::linear_elastic, .young_modulus = 1e7, .poisson_ratio = 0.3};
+  for (const double rate : {0.01, 30.0})
+    for (const auto& [a, b] :
+         {std::pair{sand, clay}, {softening, sand}, {undrained, elastic}, {clay, undrained}}) {
+      expect_lanes_agree<2>({material(a), material(b)}, rate);
+      expect_lanes_agree<3>({material(a), material(b)}, rate);
+    }
+}
+
+TEST(PrincipalLanes, MakeTheTensorAgain) {
+  for (int trial = 0; trial < 500; ++trial) {
+    Stress<3, BatchLanes> s;
+    for (auto& component : s)
+      for (int k = 0; k < kBatch; ++k)
+        component[k] = trial % 5 == 4 && any(1) > 0 ? 0 : any(1) * std::pow(10, any(6));
+    if (trial % 7 == 0)  // squares of nothing
+      for (auto& component : s) component *= 1e-170;
+    if (trial % 3 == 0) s[1] = s[0];
+    const PrincipalLanes<3> p(s);
+    const auto again = p.with(p.value);
+    for (int k = 0; k < kBatch; ++k) {
+      double size = 0;
+      Stress<3> one;
+      for (int i = 0; i < 6; ++i) one[i] = s[i][k], size = std::max(size, std::abs(one[i]));
+      std::array<double, 3> values{p.value[0][k], p.value[1][k], p.value[2][k]};
+      std::sort(values.begin(), values.end(), std::greater<>());
+      const auto exact = principal(one).value;
+      for (int i = 0; i < 3; ++i) EXPECT_NEAR(values[i], exact[i], 1e-10 * size);
+      for (int i = 0; i < 6; ++i) EXPECT_NEAR(again[i][k], one[i], 1e-14 * size);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace quicksand
