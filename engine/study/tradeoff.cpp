@@ -189,7 +189,11 @@ Tradeoff measure_tradeoff(const Scene& scene, const std::vector<Curve>& referenc
     best->result.reference = true;
     tradeoff.reference = "the run with cells of " + best->result.setting;
   }
+  const bool comparable =
+      std::any_of(truth.begin(), truth.end(), [](const Curve& c) { return c.range() > 0; });
   for (Run& run : runs) {
+    run.result.reference = run.result.reference && comparable;
+    if (!comparable && run.result.missing.empty()) run.result.missing = "nothing to compare: give a probe";
     if (run.result.missing.empty() && !run.result.reference)
       run.result.error = error_against(run.curves, truth);
     tradeoff.rungs.push_back(run.result);

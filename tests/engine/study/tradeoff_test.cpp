@@ -237,6 +237,16 @@ TEST(Tradeoff, UsesTheCurvesGiven) {
   for (const RungResult& r : tradeoff.rungs) EXPECT_FALSE(r.reference);
 }
 
+TEST(Tradeoff, SaysWhenThereIsNothingToCompare) {
+  Scene still = test::plane(0.08, 0.16, 0.02, 0.001);
+  test::add_body(still, "pond", BodyKind::water, {0, 0, 0}, {0.08, 0.12, 0});
+  RunMonitor monitor;
+  for (const RungResult& r : measure_tradeoff(still, {}, 1, 0, monitor).rungs) {
+    EXPECT_EQ(r.missing, "nothing to compare: give a probe") << r.factor;
+    EXPECT_FALSE(r.on_front);
+  }
+}
+
 TEST(Tradeoff, EndsWhenItIsCancelledOrSuspended) {
   Watching cancels, suspends;
   cancels.cancel_at = suspends.suspend_at = 2;
