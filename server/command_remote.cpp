@@ -55,6 +55,12 @@ void print_run(const RemoteRun& run) {
               << run.json["failure"].value("message", "") << '\n';
 }
 
+/// Why a run that had begun waits in the queue; empty when it does not.
+std::string waits_for(const RemoteRun& run) {
+  if (run.ended() || !run.json.at("failure").is_object()) return "";
+  return "waits (" + run.json["failure"].value("code", "") + "): " + run.json["failure"].value("message", "");
+}
+
 int print_end(Client& client, const RemoteRun& run) {
   if (run.json.at("failure").is_object())
     std::cerr << "failed (" << run.json["failure"].value("code", "")
@@ -87,8 +93,12 @@ int submit_command(const SubmitCommand& command) {
     if (!command.wait) return exit_status::ok;
     {
       ProgressBar bar;
+      std::string told;
       run = client.wait(run.id, [&](const RemoteRun& now) {
         if (now.progress) bar.draw(*now.progress);
+        const std::string reason = waits_for(now);
+        if (!reason.empty() && reason != told) std::cerr << reason << '\n';
+        told = reason;
       });
       bar.finish();
     }

@@ -214,12 +214,14 @@ Runner::End Runner::compute(Active& active) {
   return end;
 }
 
-/// A run that is canceled meanwhile has ended.
+/// A run that was canceled meanwhile, or has come to a limit, has ended.
 void Runner::queue_again(Active& active, const End& end) {
   const std::lock_guard lock(mutex_);
   const std::string& id = active.run.id;
   if (active.cancel) {
-    store_.finish(id, RunState::canceled, {}, {});
+    const bool limited = active.limit && !is_lack_of_room(*active.limit);
+    store_.finish(id, limited ? RunState::failed : RunState::canceled, limited ? active.limit : std::nullopt,
+                  {});
     left_over_.insert(id);
     return;
   }

@@ -95,8 +95,38 @@ double initial_fast_wave_limit(const Scene& scene, std::size_t stage, double h, 
   return limit;
 }
 
+/// Bytes that a run takes at a time.
+struct Memory {
+  double arrays = 0;  ///< points, faces and cells
+  double saved = 0;   ///< the last good state; a checkpoint on its way to the disk is another one
+  double frame = 0;   ///< see Frame in engine/run/run.hpp
+  /// As many frames as are held until a good state follows them, and the one that is being written.
+  double with_frames(double count) const { return arrays + 2 * saved + (1 + count) * frame; }
+};
+
+/// Of Frame's fields that are asked for.
+double frame_bytes_per_point(const Scene& scene, int stress) {
+  const std::pair<const char*, int> fields[] = {
+      {"displacement", 3},          {"velocity", 3},       {"porosity", 1}, {"pore_pressure", 1},
+      {"effective_stress", stress}, {"plastic_strain", 1}, {"head", 1}};
+  double bytes = 3 * sizeof(double) + sizeof(std::int32_t) + sizeof(std::uint8_t);
+  const auto& wanted = scene.output.fields;
+  for (const auto& [name, components] : fields)
+    if (wanted.empty() || std::find(wanted.begin(), wanted.end(), name) != wanted.end())
+      bytes += components * sizeof(float);
+  return bytes;
+}
+
+/// Frames that wait for a good state, besides the one that is being made: up to three more where they come
+/// closer together than good states do (Run::kHeldFrames, RunOptions::good_every).
+double frames_held(const Scene& scene, double dt) {
+  constexpr double most = 3, steps_between_good_states = 128;
+  const double steps_between_frames = std::max(1.0, scene.output.frame_interval / dt);
+  return std::min(most, std::floor(steps_between_good_states / steps_between_frames));
+}
+
 template <int D>
-void measure(const Scene& scene, Plan& plan) {
+Memory measure(const Scene& scene, Plan& plan) {
   const Grid<D> grid = make_grid<D>(scene);
   const PointCounts points = count_points<D>(scene, grid);
   plan.soil_points = points.soil;
@@ -119,9 +149,10 @@ void measure(const Scene& scene, Plan& plan) {
   const double per_cell = 2 * (5 * D + 1 + sizeof(int)) + (grid.axial ? (D + 1) * sizeof(double) : 0);
   const double points_bytes = per_soil * static_cast<double>(plan.soil_points + plan.fixed_soil_points) +
                               per_water * static_cast<double>(plan.water_points);
-  plan.memory_bytes = 2 * points_bytes +
-                      (per_active_cell + kept_per_active_cell) * static_cast<double>(points.active_cells) +
-                      per_cell * grid.count();
+  const auto active = static_cast<double>(points.active_cells);
+  const auto count = static_cast<double>(plan.soil_points + plan.fixed_soil_points + plan.water_points);
+  return {points_bytes + per_active_cell * active + per_cell * grid.count(),
+          points_bytes + kept_per_active_cell * active, count * frame_bytes_per_point(scene, kStress<D>)};
 }
 
 void explain(const Scene& scene, Plan& plan) {
@@ -170,10 +201,7 @@ Plan make_plan(const Scene& scene, const Calibration& machine) {
   Plan plan;
   plan.dimensions = scene.domain.dimension == Dimension::space ? 3 : 2;
   plan.cell_size = scene.cell_size();
-  if (plan.dimensions == 2)
-    measure<2>(scene, plan);
-  else
-    measure<3>(scene, plan);
+  const Memory memory = plan.dimensions == 2 ? measure<2>(scene, plan) : measure<3>(scene, plan);
   plan.has_soil = plan.soil_points > 0;
   plan.has_water = has_water(scene);
   plan.has_viscosity = plan.has_water && scene.water.viscosity > 0;
@@ -198,6 +226,7 @@ Plan make_plan(const Scene& scene, const Calibration& machine) {
     plan.end_time += scene.stages[k].duration;
     plan.steps += steps_between_events(scene, scene.stages[k].duration, bound.seconds);
   }
+  plan.memory_bytes = memory.with_frames(frames_held(scene, plan.time_step));
   plan.seconds =
       machine.seconds(scene, plan.steps, static_cast<double>(plan.soil_points + plan.water_points));
   plan.seconds += output_seconds(scene, plan);

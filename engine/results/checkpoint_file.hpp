@@ -21,7 +21,8 @@ struct StoredCheckpoint {
 
 /// Stores it in one step: a kill or a power loss leaves this one or the one before. What the results hold
 /// until then must be on disk already. Throws std::runtime_error when the disk refuses; the older ones stay.
-void store_checkpoint(const std::filesystem::path& folder, StoredCheckpoint& checkpoint);
+void store_checkpoint(const std::filesystem::path& folder, std::string identity, std::string results,
+                      const Checkpoint& run);
 
 /// Those that are there, the newest first.
 std::vector<std::filesystem::path> checkpoint_files(const std::filesystem::path& folder);

@@ -219,9 +219,8 @@ void ResultFile::checkpoint(const Checkpoint& checkpoint) {
   Saver results;
   Vtkhdf::Extent extent = state_->vtkhdf->extent();
   results(extent);
-  StoredCheckpoint stored{state_->identity, results.bytes, checkpoint};
   try {
-    store_checkpoint(state_->folder, stored);
+    store_checkpoint(state_->folder, state_->identity, std::move(results.bytes), checkpoint);
   } catch (const std::runtime_error&) {  // the one before serves
   }
 }

@@ -20,7 +20,7 @@ void BackgroundSink::sample(double time, const std::vector<double>& values) {
 
 /// Waits as a frame does: it may be as large.
 void BackgroundSink::checkpoint(const Checkpoint& checkpoint) {
-  add({Item::checkpoint, [this, checkpoint] { sink_.checkpoint(checkpoint); }});
+  add({Item::checkpoint, [this, kept = checkpoint] { sink_.checkpoint(kept); }});
 }
 
 void BackgroundSink::finish() {

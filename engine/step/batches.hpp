@@ -47,6 +47,11 @@ struct PointBatch {
     in_a_row = from[count - 1] - from[0] == static_cast<std::uint32_t>(count - 1) &&
                from[0] + kBatch <= list.order.size();
   }
+  /// v in the lanes of these points, else 0.
+  QUICKSAND_INLINE BatchLanes only(const BatchLanes& v) const {
+    const BatchLanes lane{0, 1, 2, 3, 4, 5, 6, 7};
+    return where(lane < count, v, BatchLanes{});
+  }
   /// Of an array of numbers.
   QUICKSAND_INLINE BatchLanes get(const std::vector<double>& from) const {
     if (in_a_row) return lanes_from<kBatch>(from[point[0]]);

@@ -39,16 +39,17 @@ class MotionTotals {
   /// Of a batch; `also` is any number that must be finite too.
   QUICKSAND_INLINE void add(const PointBatch<D>& batch, const std::vector<double>& mass,
                             const std::array<BatchLanes, D>& v, const BatchLanes& also) {
-    BatchLanes m{}, speed2{};
-    for (int k = 0; k < batch.count; ++k) m[k] = mass[batch.point[k]];
+    const BatchLanes m = batch.only(batch.get(mass));
+    BatchLanes speed2{};
     for (int d = 0; d < D; ++d) {
-      momentum_[d] += m * v[d];
-      speed2 += v[d] * v[d];
+      const BatchLanes component = batch.only(v[d]);
+      momentum_[d] += m * component;
+      speed2 += component * component;
     }
     mass_ += m;
     kinetic_ += 0.5 * m * speed2;
     max_speed2_ = where(speed2 > max_speed2_, speed2, max_speed2_);
-    finite_ += 0.0 * (speed2 + also);  // not a number is never lost
+    finite_ += 0.0 * (speed2 + batch.only(also));  // not a number is never lost
   }
   void add_to(Totals<D>& totals) const {
     for (int k = 0; k < kBatch; ++k) {

@@ -1,8 +1,11 @@
 #!/usr/bin/env bash
 # Builds deploy/Containerfile and computes the heave case in it, as deploy/README.md says. Root. Debian's own image is
-# made with debootstrap, so that nothing but a Debian mirror is needed. usage: container.sh [DEBIAN_ROOT]
+# made with debootstrap, so that nothing but a Debian mirror is needed.
+# usage: container.sh [--package PACKAGE.deb] [DEBIAN_ROOT]; with a package its first stage, which compiles it, takes that one
 set -euo pipefail
 top=$(dirname "$(dirname "$(dirname "$(readlink -f "$0")")")")
+package=
+if [ "${1:-}" = --package ]; then package=$(readlink -f "$2"); shift 2; fi
 work=$(mktemp -d)
 fail() { echo "container: $*" >&2; exit 1; }
 trap 'buildah "${store[@]}" rm -a >/dev/null 2>&1 || true; rm -rf "$work"' EXIT
@@ -20,8 +23,15 @@ for tag in 12 12-slim; do
 done
 buildah "${store[@]}" rm "$base" >/dev/null
 
+context=$top file=$top/deploy/Containerfile
+if [ -n "$package" ]; then
+  context=$work/context file=$work/Containerfile
+  mkdir "$context" && cp "$package" "$context/"
+  sed 's|^RUN apt-get update && deploy/build-package$|RUN mkdir -p build/package \&\& mv *.deb build/package/|' "$top/deploy/Containerfile" >"$file"
+  ! grep -q 'deploy/build-package$' "$file" || fail "the Containerfile compiles in another way"
+fi
 begin=$(date +%s)
-buildah "${store[@]}" build "${policy[@]}" --pull-never -f "$top/deploy/Containerfile" -t quicksand "$top" >"$work/build.log" 2>&1 \
+buildah "${store[@]}" build "${policy[@]}" --pull-never -f "$file" -t quicksand "$context" >"$work/build.log" 2>&1 \
   || { tail -n 40 "$work/build.log" >&2; fail "it does not build"; }
 echo "container: built in $(($(date +%s) - begin)) s"
 

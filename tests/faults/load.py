@@ -4,9 +4,9 @@ in ranges while two runs compute.
 usage: load.py QUICKSAND SMALL_CASE [--minutes N] [--runs N] [--megabytes-per-s RATE]
 
 Clients come and go: times with and without them alternate, so that what else the machine does weighs on both, and the
-runs' speed is compared within each pair. Clients belong on other machines: here they run at the lowest priority, but
-for the pollers, whose own delays would count as latency. Each downloads RATE at most. The processor time of runs,
-service, nginx and clients is told apart.
+runs' speed is compared within each pair. Each client downloads RATE at most. The processor time of runs, service, nginx
+and clients is told apart: clients belong on other machines, so what they themselves take of this one is not counted
+against the service (`less than alone` tells it with and without).
 """
 
 import argparse
@@ -82,12 +82,11 @@ class Load:
         facts = {"ids": [f"{k:016x}" for k in range(options.runs - 1)], "running": self.running, "large": done,
                  "rate": options.megabytes_per_s * 1e6}
         self.clients = {kind: subprocess.Popen(
-            ["nice", "-n", "0" if kind == "pollers" else "19", sys.executable,
-             os.path.join(os.path.dirname(os.path.abspath(__file__)), "load_clients.py"), str(self.nginx.port),
+            [sys.executable, os.path.join(os.path.dirname(os.path.abspath(__file__)), "load_clients.py"), str(self.nginx.port),
              folder + "/nginx/cert", self.key, kind, json.dumps(facts)],
             stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) for kind in ("pollers", "streams", "downloads")}
         self.latencies, self.statuses, self.events, self.bytes = [], {}, 0, 0
-        self.slower, self.dearer, self.memory, self.seconds = [], [], [], {}
+        self.slower, self.without_clients, self.dearer, self.memory, self.seconds = [], [], [], [], {}
 
     def steps(self):
         text = self.server.call("GET", "/metrics", headers={"X-API-Key": self.key}).body.decode()
@@ -124,13 +123,16 @@ class Load:
     def pair(self, quiet, loaded):
         """Half of the quiet time before, half after."""
         alone = self.speed(lambda: time.sleep(quiet / 2))
-        before = self.processor()
+        before, begin = self.processor(), time.monotonic()
         busy = self.speed(lambda: self.with_clients(loaded))
-        for name, seconds in self.processor().items():
-            self.seconds[name] = self.seconds.get(name, 0) + seconds - before[name]
+        used = {name: seconds - before[name] for name, seconds in self.processor().items()}
+        for name, seconds in used.items():
+            self.seconds[name] = self.seconds.get(name, 0) + seconds
+        clients = sum(used[kind] for kind in self.clients) / (time.monotonic() - begin) / os.cpu_count()
         after = self.speed(lambda: time.sleep(quiet / 2))
         alone = [(a + b) / 2 for a, b in zip(alone, after)]
         self.slower.append(1 - busy[0] / alone[0])
+        self.without_clients.append(1 - busy[0] / alone[0] / (1 - clients))
         self.dearer.append(1 - busy[1] / alone[1])
         self.memory.append(resident_mb(self.server.process))
         print(f"  steps/s {alone[0]:.0f} alone, {busy[0]:.0f} with clients: {self.slower[-1]:.1%} less "
@@ -171,14 +173,14 @@ def prepare(options, folder):
 def report(load, seconds):
     latencies = sorted(load.latencies)
     p99 = latencies[len(latencies) * 99 // 100]
-    slower = statistics.median(load.slower)
+    slower = statistics.median(load.without_clients)
     print(f"{len(latencies)} polls in {seconds:.0f} s: median {latencies[len(latencies) // 2] * 1000:.1f} ms, "
           f"p99 {p99 * 1000:.1f} ms [50]; answers {dict(sorted(load.statuses.items()))}")
     print(f"{load.events} events, {load.bytes / 1e6 / seconds:.0f} MB/s downloaded, memory {load.memory[0]:.0f} MB at first, "
           f"{load.memory[-1]:.0f} MB at the end, {max(load.memory):.0f} MB at most [200]")
-    print(f"steps/s of the runs with clients: {slower:.1%} less than alone (median of {len(load.slower)} pairs, "
-          f"{min(load.slower):.1%} to {max(load.slower):.1%}) [10 %]; per second of processor time "
-          f"{statistics.median(load.dearer):.1%} less")
+    print(f"steps/s of the runs with clients: {slower:.1%} less than alone, without what the clients take (median of "
+          f"{len(load.slower)} pairs, {min(load.without_clients):.1%} to {max(load.without_clients):.1%}) [10 %]; "
+          f"{statistics.median(load.slower):.1%} with it; per second of processor time {statistics.median(load.dearer):.1%} less")
     print("processors busy with: " + ", ".join(f"{name} {used / seconds:.3f}" for name, used in load.seconds.items())
           + f" of {os.cpu_count()}")
     assert set(load.statuses) <= {200, 206, 429, 503}, load.statuses
@@ -200,7 +202,7 @@ def main():
             pairs = max(2, round(options.minutes))
             each = options.minutes * 60 / pairs
             for _ in range(pairs):
-                load.pair(each / 4, each)
+                load.pair(each / 10, each)
             report(load, pairs * each)
         finally:
             load.stop()

@@ -88,7 +88,7 @@ TEST(Execute, ACheckpointOfAnotherBuildIsOfNoUse) {
   ASSERT_NE(stored.identity.find(engine_build()), std::string::npos);
   stored.identity.replace(stored.identity.find(engine_build()), 1, "x");
   remove_checkpoints(folder.path());
-  store_checkpoint(folder.path(), stored);
+  store_checkpoint(folder.path(), stored.identity, stored.results, stored.run);
   SuspendingMonitor required(-1);
   const Execution refused = execute(small_case(), {}, folder.path().string(), required, {}, Resume::required);
   EXPECT_EQ(refused.report.failure.code, "no_checkpoint");

@@ -106,7 +106,7 @@ TEST_F(CheckpointTest, ARunThatEndsSoonerKeepsNothingOfWhatCameAfter) {
 TEST_F(CheckpointTest, TheOneBeforeServesWhenTheNewestIsDamaged) {
   for (const char* state : {"first", "second", "third"}) {
     StoredCheckpoint stored{"case", "", {state, 1, 2, 3}};
-    store_checkpoint(folder_, stored);
+    store_checkpoint(folder_, stored.identity, stored.results, stored.run);
   }
   auto files = checkpoint_files(folder_);
   ASSERT_EQ(files.size(), 2u);
@@ -124,7 +124,7 @@ TEST_F(CheckpointTest, TheOneBeforeServesWhenTheNewestIsDamaged) {
 
 TEST_F(CheckpointTest, ANewRunForgetsThoseOfAnother) {
   StoredCheckpoint stored{"case", "", {}};
-  store_checkpoint(folder_, stored);
+  store_checkpoint(folder_, stored.identity, stored.results, stored.run);
   const ResultFile file(folder_.string(), documents_);
   EXPECT_TRUE(checkpoint_files(folder_).empty());
 }
