@@ -69,34 +69,6 @@ void check_walls(const Scene& s, const Recorder& results, Broken& broken) {
     }
 }
 
-/// A wall from side to side: as many points on either side as at the start.
-void check_partitions(const Scene& s, const Recorder& results, Broken& broken) {
-  const std::size_t axes = s.domain.dimension == Dimension::space ? 3 : 2;
-  for (const Wall& wall : s.walls) {
-    std::size_t across =
-        axes;  // the axis that it stands across, if it reaches from side to side in all others
-    bool whole = wall.line.has_value();
-    for (std::size_t d = 0; d < axes && whole; ++d) {
-      const double from = std::min(wall.line->from[d], wall.line->to[d]),
-                   to = std::max(wall.line->from[d], wall.line->to[d]);
-      if (from == to && across == axes)
-        across = d;
-      else
-        whole = from <= s.domain.min[d] && to >= s.domain.max[d];
-    }
-    if (!whole || across == axes) continue;
-    std::size_t first = 0;
-    for (const Frame& frame : results.frames) {
-      std::size_t below = 0;
-      for (std::size_t p = 0; p < frame.points(); ++p)
-        below += frame.position[3 * p + across] < wall.line->from[across];
-      if (frame.index == 0) first = below;
-      if (below != first && frame.points() == results.frames.front().points())
-        return broken.push_back("points passed a partition at " + figure(frame.time) + " s");
-    }
-  }
-}
-
 /// Heights of water that may press: the domain's, the highest reservoir's.
 double fall_height(const Scene& s) {
   double height = diagonal(s);
@@ -210,7 +182,6 @@ Broken invariants(const Scene& scene, const RunReport& report, const Recorder& r
   Broken broken;
   if (!check_finite(results, broken)) return broken;
   check_walls(scene, results, broken);
-  check_partitions(scene, results, broken);
   if (report.status == RunStatus::failed) return broken;
   check_masses(report.ledger, broken);
   check_water_volume(scene, report.ledger, results, broken);

@@ -351,23 +351,5 @@ def fall(s):
     s.more["_form"] = "fall"
 
 
-def partition(s):
-    """A wall from side to side, which nothing may pass: water or soil on one side, or both, thrown against it."""
-    s.nx = max(s.nx, 3)
-    upright = s.rng.random() < 0.7
-    at = s.rng.randint(1, (s.nx if upright else s.ny) - 1)
-    low, high = (s.box(0, 0, at, s.ny - 0.5), s.box(at, 0, s.nx, s.rng.randint(1, s.ny))) if upright else \
-        (s.box(0, 0, s.nx, at), s.box(0, at, s.nx, s.ny - 0.5))
-    toward = [1.0, 0.0] if upright else [0.0, 1.0]
-    speed = s.velocity()
-    size = max(abs(c) for c in speed)
-    kinds = ("water", "soil", "saturated_soil")
-    s.add("low", s.rng.choice(kinds), low, velocity=[size * c for c in toward] + ([0.0] if s.space else []))
-    if s.rng.random() < 0.5:
-        s.add("high", s.rng.choice(kinds), high)
-    line = s.line(at, 0, at, s.ny) if upright else s.line(0, at, s.nx, at)
-    s.more["walls"] = [{"name": "partition", "line": line, "no_slip": s.rng.random() < 0.5}]
-
-
 FAMILIES = (pond, pond, layers, loaded, loaded, falling, falling, breaking, breaking, chamber, reservoirs, reservoirs, gates,
             removal, jet, slivers, on_faces, still, fall)
