@@ -16,8 +16,8 @@ struct ParsedCase {
       faults;  ///< all of them: syntax, duplicate and unknown keys, types, ranges, check(scene)
 };
 
-/// Case text (`quicksand.case/1`) → Scene. `preset` replaces the case's own `numerics.preset`, target_error and
-/// budget_seconds; without it these choose the cells, by the times of `machine`.
+/// Case text (`quicksand.case/1`) → Scene. `preset` replaces the case's own `numerics.preset`, target_error
+/// and budget_seconds; without it these choose the cells, by the times of `machine`.
 ParsedCase parse_case(const std::string& text, const std::optional<Preset>& preset = {},
                       const Calibration& machine = {});
 

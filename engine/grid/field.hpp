@@ -27,7 +27,7 @@ struct ZeroPages {
   T* allocate(std::size_t n) {
 #if defined(__SANITIZE_ADDRESS__)
     // From the heap, so that the sanitizer sees where an array ends.
-    void* at = ::operator new(n * sizeof(T), std::align_val_t{alignof(T)});
+    void* at = ::operator new (n * sizeof(T), std::align_val_t{alignof(T)});
     std::memset(at, 0, n * sizeof(T));
 #else
     void* at = mmap(nullptr, n * sizeof(T), PROT_READ | PROT_WRITE,
@@ -38,7 +38,7 @@ struct ZeroPages {
   }
   void deallocate(T* at, [[maybe_unused]] std::size_t n) {
 #if defined(__SANITIZE_ADDRESS__)
-    ::operator delete(at, std::align_val_t{alignof(T)});
+    ::operator delete (at, std::align_val_t{alignof(T)});
 #else
     munmap(at, n * sizeof(T));
 #endif

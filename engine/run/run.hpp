@@ -99,7 +99,7 @@ struct Ledger {
   double water_volume_initial = 0, water_volume = 0;  ///< m³, room that the water takes (sampling.hpp)
   double water_in = 0, water_out = 0, soil_out = 0;   ///< kg, through reservoirs and open sides
   double water_removed = 0, soil_removed = 0;         ///< kg, of bodies that stages removed
-  double water_volume_drift_max = 0;  ///< largest change of room − mass/ρw, over V0 or mass/ρw
+  double water_volume_drift_max = 0;        ///< largest change of room − mass/ρw, over V0 or mass/ρw
   std::array<double, 3> momentum_change{};  ///< N·s, Σ m v now less at the start; m × inertia if scaled
   std::array<double, 3> impulse_gravity{}, impulse_walls{}, impulse_loads{};  ///< N·s
   std::array<double, 3> impulse_surface{};  ///< N·s, to drops that the water surface carries along

@@ -213,9 +213,9 @@ struct Numerics {
   double quasi_static_transits = 200;
   long max_steps = 100'000'000;
   ErrorEstimate error_estimate = ErrorEstimate::none;  ///< finer: a coarser and a finer companion
-  std::optional<double> target_error;    ///< –, of a figure's range: choose the cells for it
-  std::optional<double> budget_seconds;  ///< s on one core: likewise
-  std::string chosen;                    ///< why these cells, once they are chosen (settings_choice.hpp)
+  std::optional<double> target_error;                  ///< –, of a figure's range: choose the cells for it
+  std::optional<double> budget_seconds;                ///< s on one core: likewise
+  std::string chosen;  ///< why these cells, once they are chosen (settings_choice.hpp)
 };
 
 struct Scene {

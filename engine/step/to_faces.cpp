@@ -11,18 +11,10 @@ namespace {
 /// Row d of a symmetric tensor.
 template <int D>
 QUICKSAND_INLINE std::array<BatchLanes, D> stress_row(const Stress<D, BatchLanes>& s, int d) {
-  if constexpr (D == 2)
-    return {d == 0 ? s[0] : s[3], d == 0 ? s[3] : s[1]};
-  else
-    return {d == 0   ? s[0]
-            : d == 1 ? s[3]
-                     : s[5],
-            d == 0   ? s[3]
-            : d == 1 ? s[1]
-                     : s[4],
-            d == 0   ? s[5]
-            : d == 1 ? s[4]
-                     : s[2]};
+  constexpr int at[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};
+  std::array<BatchLanes, D> row;
+  for (int j = 0; j < D; ++j) row[j] = s[at[d][j]];
+  return row;
 }
 
 /// m/s, for drag that follows it.
@@ -113,7 +105,7 @@ QUICKSAND_INLINE void add_soil(const Kernel& kernel, int k, const Lanes<8>& carr
 template <int D, class Kernel, class T>
 QUICKSAND_INLINE void add_to_centers(const Kernel& kernel, int k, const T& value,
                                      std::array<T, CellWindow<D>::kCenters>& sums) {
-  for (int z = 0; z < (D == 3 ? 3 : 1); ++z)
+  for (int z = 0; z < CellWindow<D>::kLast; ++z)
     for (int y = 0; y < 3; ++y) {
       const T row =
           (D == 2 ? kernel.center[1].w[y][k] : kernel.center[1].w[y][k] * kernel.center[D - 1].w[z][k]) *
@@ -169,7 +161,7 @@ QUICKSAND_INLINE void add_water(const State<D>& s, const Kernel& kernel, int k, 
   const auto& own = kernel.face[d];
   const auto& other = kernel.center[axis_of(d, 1)];
   const auto& last = kernel.center[axis_of(d, D - 1)];
-  for (int z = 0; z < (D == 3 ? 3 : 1); ++z)
+  for (int z = 0; z < CellWindow<D>::kLast; ++z)
     for (int y = 0; y < 3; ++y) {
       const double w = D == 2 ? other.w[y][k] : other.w[y][k] * last.w[z][k];
       Lanes<2> row = w * carried, turning{};

@@ -21,7 +21,7 @@ QUICKSAND_INLINE std::array<bool, kBatch> falling(const State<D>& s, const CellW
   std::array<double, CellWindow<D>::kCenters> depth;
   window.centers([&](int node, int cell) { depth[node] = s.cell[cell].depth; });
   BatchLanes at_point{};
-  for (int z = 0; z < (D == 3 ? 3 : 1); ++z)
+  for (int z = 0; z < CellWindow<D>::kLast; ++z)
     for (int y = 0; y < 3; ++y) {
       BatchLanes row{};
       for (int x = 0; x < 3; ++x) row += kernel.center[0].w[x] * depth[x + 3 * (y + 3 * z)];
