@@ -3,7 +3,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cstdint>
 #include <stdexcept>
 #include <tuple>
@@ -14,8 +13,9 @@ namespace quicksand {
 namespace {
 
 // Metadata kept in memory, so that between two flushes none of it is written: a kill then finds the file as
-// the last flush left it. A frame dirties some 100 kB.
-constexpr std::size_t metadata_cache_bytes = 16 * 1024 * 1024;
+// the last flush left it. A frame dirties some 100 kB, which the cache gives up last. What it keeps of older
+// frames takes several times as much memory as in the file, so that it must not grow.
+constexpr std::size_t metadata_cache_bytes = 2 * 1024 * 1024;
 // Half the entries of a symbol-table leaf (40 bytes each) and of a tree node: a frame's arrays fit one leaf,
 // and /frames seldom splits one, which is the moment when a kill could cost names of older frames.
 constexpr unsigned group_leaf_k = 16, group_tree_k = 16;
@@ -32,7 +32,7 @@ h5::Handle file_access(const std::string& what) {
   h5::check(H5Pget_mdc_config(access.get(), &cache), what);
   cache.set_initial_size = true;
   cache.initial_size = metadata_cache_bytes;
-  cache.max_size = std::max(cache.max_size, metadata_cache_bytes);
+  cache.max_size = cache.min_size = metadata_cache_bytes;
   cache.decr_mode = H5C_decr__off;
   h5::check(H5Pset_mdc_config(access.get(), &cache), what);
   return access;
