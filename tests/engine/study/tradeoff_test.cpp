@@ -230,7 +230,7 @@ TEST(Tradeoff, UsesTheCurvesGiven) {
   scene.stages[0].duration = 0.002;
   scene.domain.cell_size = 0.02;
   const Curve base{"probe.base", "Pa", 0, {0, 0.002}, {1e6, 1e6}};
-  const Tradeoff tradeoff = measure_tradeoff(scene, {base}, 1, 0.4, monitor);
+  const Tradeoff tradeoff = measure_tradeoff(scene, {base}, 1, 0, monitor);
   EXPECT_EQ(tradeoff.reference, "the curves given");
   const RungResult& own = tradeoff.rungs.front();
   EXPECT_NEAR(own.error, 1, 0.01);  // some kPa of the MPa said
