@@ -2,6 +2,8 @@
 
 #include <pthread.h>
 #include <spdlog/spdlog.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include <algorithm>
 
@@ -20,6 +22,8 @@ namespace {
 
 /// By which `top` and tests/faults/load.py tell what computes from what serves.
 constexpr const char* run_thread_name = "quicksand-run";
+/// Of what computes, so that answers go first where all cores are busy.
+constexpr int run_niceness = 10;
 /// Before a worker tries again after the store refused.
 constexpr std::chrono::seconds store_retry{1};
 
@@ -143,7 +147,9 @@ std::shared_ptr<Runner::Active> Runner::take_next(bool short_runs_only) {
 }
 
 void Runner::work(bool short_runs_only) {
-  ::pthread_setname_np(::pthread_self(), run_thread_name);  // inherited by the threads of its runs
+  // Both are inherited by the threads of its runs. In Linux niceness belongs to a thread.
+  ::pthread_setname_np(::pthread_self(), run_thread_name);
+  ::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), run_niceness);
   while (const auto active = take_next(short_runs_only)) {
     bell_.ring();
     execute_one(*active);

@@ -15,7 +15,7 @@ namespace {
 // Metadata kept in memory, so that between two flushes none of it is written: a kill then finds the file as
 // the last flush left it. A frame dirties some 100 kB, which the cache gives up last. What it keeps of older
 // frames takes several times as much memory as in the file, so that it must not grow.
-constexpr std::size_t metadata_cache_bytes = 2 * 1024 * 1024;
+constexpr std::size_t metadata_cache_bytes = 1024 * 1024;
 // Half the entries of a symbol-table leaf (40 bytes each) and of a tree node: a frame's arrays fit one leaf,
 // and /frames seldom splits one, which is the moment when a kill could cost names of older frames.
 constexpr unsigned group_leaf_k = 16, group_tree_k = 16;
