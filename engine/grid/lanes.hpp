@@ -19,13 +19,10 @@ template <int N>
 struct LanesOf {
   typedef double type __attribute__((vector_size(N * sizeof(double))));
   typedef double anywhere __attribute__((vector_size(N * sizeof(double)), aligned(alignof(double))));
-  typedef int integers __attribute__((vector_size(N * sizeof(int))));
 };
 /// N doubles, N a power of two.
 template <int N>
 using Lanes = typename LanesOf<N>::type;
-template <int N>
-using IntLanes = typename LanesOf<N>::integers;
 
 /// Points that are worked out together.
 inline constexpr int kBatch = 8;

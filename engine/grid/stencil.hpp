@@ -72,15 +72,6 @@ QUICKSAND_INLINE void for_components(F&& f) {
   f(std::integral_constant<int, 0>{}), f(std::integral_constant<int, 1>{});
   if constexpr (D == 3) f(std::integral_constant<int, 2>{});
 }
-/// The vector of f(d).
-template <int D, class F>
-QUICKSAND_INLINE Vec<D> from_components(F&& f) {
-  if constexpr (D == 2)
-    return {f(std::integral_constant<int, 0>{}), f(std::integral_constant<int, 1>{})};
-  else
-    return {f(std::integral_constant<int, 0>{}), f(std::integral_constant<int, 1>{}),
-            f(std::integral_constant<int, 2>{})};
-}
 
 namespace stencil {
 

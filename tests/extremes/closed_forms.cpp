@@ -1,18 +1,11 @@
 // Invariants that compare: with a closed form, with other threads, with the scene at another scale.
 
 #include <cmath>
-#include <cstdio>
 
 #include "tests/extremes/invariants.hpp"
 
 namespace quicksand::test {
 namespace {
-
-std::string figure(double value) {
-  char buffer[32];
-  std::snprintf(buffer, sizeof buffer, "%.3g", value);
-  return buffer;
-}
 
 /// Pressure of water at rest; 1 % of the deepest, twice what cases/hydrostatic is held to: its cells are
 /// finer.

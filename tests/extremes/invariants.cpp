@@ -4,13 +4,14 @@
 #include <cstdio>
 
 namespace quicksand::test {
-namespace {
 
 std::string figure(double value) {
   char buffer[32];
   std::snprintf(buffer, sizeof buffer, "%.3g", value);
   return buffer;
 }
+
+namespace {
 
 double size(const Vec3& v) { return std::hypot(v[0], v[1], v[2]); }
 

@@ -11,6 +11,9 @@ namespace quicksand::test {
 
 using Broken = std::vector<std::string>;
 
+/// A number as findings give it, three digits.
+std::string figure(double value);
+
 /// Finite values, masses, water volume, energy, walls, pressures. A failed run is held to the first ones
 /// only, in the frames that it wrote.
 Broken invariants(const Scene& scene, const RunReport& report, const Recorder& results);

@@ -11,6 +11,7 @@
 #include <set>
 
 #include "tests/verification/recorder.hpp"
+#include "tests/verification/terzaghi_series.hpp"
 
 namespace quicksand::test {
 namespace {
@@ -21,15 +22,6 @@ constexpr int kCells = 20;
 constexpr double kFirstT = 0.05;
 /// Transits of the frame's wave within T = 1: fewer, and inertia shows in nature too.
 constexpr double kTransits = 200;
-
-double pressure(double t, double z) {
-  double sum = 0;
-  for (int m = 0; m < 100; ++m) {
-    const double a = (2 * m + 1) * std::numbers::pi / 2;
-    sum += 2 / a * std::sin(a * z) * std::exp(-a * a * t);
-  }
-  return sum;
-}
 
 struct Column {
   Scene scene;
@@ -94,8 +86,9 @@ void expect_series(double permeability, double bulk, double young) {
     const auto& p = field(frame, "pore_pressure");
     for (std::size_t i = 0; i < frame.points(); ++i)
       if (frame.phase[i] == 1)
-        worst = std::max(worst, std::abs(p[i] / kLoad - pressure(frame.time / end,
-                                                                 1 - frame.position[3 * i + 1] / c.height)));
+        worst = std::max(
+            worst, std::abs(p[i] / kLoad -
+                            terzaghi_pressure(frame.time / end, 1 - frame.position[3 * i + 1] / c.height)));
   }
   EXPECT_LE(worst, 0.02);
   for (const StepBound& bound : r.report.steps_bound_by)

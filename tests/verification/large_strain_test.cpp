@@ -10,6 +10,7 @@
 #include <numbers>
 
 #include "tests/verification/book.hpp"
+#include "tests/verification/terzaghi_series.hpp"
 
 namespace quicksand::test {
 namespace {
@@ -18,17 +19,8 @@ namespace {
 constexpr double kLoad = 1e5, kHeight = 1, kCompressibility = 1e-5, kDuration = 9.81e6;
 constexpr double kFirstT = 0.05;
 
-/// Σ 2/M sin(M z) exp(−M² T).
-double series(double t, double z) {
-  double sum = 0;
-  for (int i = 0; i < 200; ++i) {
-    const double m = (2 * i + 1) * std::numbers::pi / 2;
-    sum += 2 / m * std::sin(m * z) * std::exp(-m * m * t);
-  }
-  return sum;
-}
 double pressure(double t, double z) {
-  return std::log1p(std::expm1(kCompressibility * kLoad) * series(t, z)) / kCompressibility;
+  return std::log1p(std::expm1(kCompressibility * kLoad) * terzaghi_pressure(t, z)) / kCompressibility;
 }
 double settlement(double t) {
   double rest = 0;

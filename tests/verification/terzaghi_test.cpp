@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "tests/verification/book.hpp"
+#include "tests/verification/terzaghi_series.hpp"
 
 namespace quicksand::test {
 namespace {
@@ -19,15 +20,6 @@ constexpr double kModulus = kYoung * (1 - kPoisson) / ((1 + kPoisson) * (1 - 2 *
 constexpr double kStorage = 1 / kModulus + 0.4 / 2.2e9;  // 1/Pa
 /// From here on errors count: before, the load's wave crosses the column (T = 0.017 at k = 1e-3 m/s).
 constexpr double kFirstT = 0.05;
-
-double pressure(double t, double z) {
-  double sum = 0;
-  for (int m = 0; m < 200; ++m) {
-    const double a = (2 * m + 1) * std::numbers::pi / 2;
-    sum += 2 / a * std::sin(a * z) * std::exp(-a * a * t);
-  }
-  return sum;
-}
 
 double consolidation(double t) {
   double sum = 0;
@@ -84,8 +76,9 @@ Errors run_column(Page& page, const Scene& scene) {
   const auto p = r.results.series("probe.base");
   for (std::size_t i = 0; i < p.size(); ++i) {
     const double t = r.results.times[i] / end;
-    if (t >= kFirstT) e.pressure = std::max(e.pressure, std::abs(p[i] / kLoad - pressure(t, 1)));
-    base.x.push_back(t), base.result.push_back(p[i] / kLoad), base.reference.push_back(pressure(t, 1));
+    if (t >= kFirstT) e.pressure = std::max(e.pressure, std::abs(p[i] / kLoad - terzaghi_pressure(t, 1)));
+    base.x.push_back(t), base.result.push_back(p[i] / kLoad),
+        base.reference.push_back(terzaghi_pressure(t, 1));
   }
   for (const Frame& frame : r.results.frames) {
     const double t = frame.time / end, u = settlement(frame, spacing) * kModulus / (kLoad * kHeight);
@@ -96,7 +89,7 @@ Errors run_column(Page& page, const Scene& scene) {
     for (std::size_t i = 0; i < frame.points(); ++i) {
       const double z = 1 - frame.position[3 * i + 1] / kHeight;
       if (frame.phase[i] == 1)
-        e.pressure = std::max(e.pressure, std::abs(all[i] / kLoad - pressure(t, std::max(z, 0.0))));
+        e.pressure = std::max(e.pressure, std::abs(all[i] / kLoad - terzaghi_pressure(t, std::max(z, 0.0))));
     }
   }
   page.curve(base), page.curve(degree);
