@@ -170,6 +170,7 @@ State<D> make_state(const Scene& scene) {
   s.cell = Field<CellState>(s.grid.count());
   s.pressure = Field<double>(s.grid.count());
   s.pressure_old = Field<double>(s.grid.count());
+  s.pressure_before = Field<double>(s.grid.count());
   for (const Load& load : scene.loads)
     if (load.kind == Load::Kind::traction)
       s.loads.push_back(make_load<D>(scene, load, s));

@@ -44,7 +44,7 @@ void keep_block(A& a, State<D>& s, int block) {
       if constexpr (A::loading) s.soil_walls.set_separation(d, i, lifted);
     }
     if (s.counts_room) a(s.cell_sums[i]);
-    if (s.has_water) a(s.cell[i], s.pressure[i]);
+    if (s.has_water) a(s.cell[i], s.pressure[i], s.pressure_old[i]);
   });
 }
 

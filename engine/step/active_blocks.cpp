@@ -21,7 +21,7 @@ void forget(State<D>& s, int block) {
     s.cell_sums[i] = {};
     if (!s.has_water) return;
     s.cell[i] = {};
-    s.pressure[i] = s.pressure_old[i] = 0;
+    s.pressure[i] = s.pressure_old[i] = s.pressure_before[i] = 0;
   });
 }
 

@@ -80,6 +80,21 @@ PressureReport conjugate_gradients(const Grid<D>& grid, PressureSystem<D>& m, Mu
   const double target = tolerance * scale + kRounding * term;
   const auto residual_of = [&] { return largest(rows, [&](std::size_t i) { return r[i]; }); };
   double residual = residual_of();
+  const auto go = [&](double alpha) {
+    for_chunks(rows, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        x[i] += alpha * direction[i];
+        r[i] -= alpha * image[i];
+      }
+    });
+    residual = residual_of();
+  };
+  if (residual > target && !m.change.empty()) {
+    std::copy(m.change.begin(), m.change.end(), direction.begin());
+    times(direction, image);
+    const double energy = dot(rows, direction, image);
+    if (energy > 0) go(dot(rows, direction, r) / energy);
+  }
   double rz = 0;
   while (residual > target && report.iterations < kMaxIterations) {
     multigrid.apply(r, z);
@@ -89,15 +104,8 @@ PressureReport conjugate_gradients(const Grid<D>& grid, PressureSystem<D>& m, Mu
       for (std::size_t i = begin; i < end; ++i) direction[i] = turn == 0 ? z[i] : z[i] + turn * direction[i];
     });
     times(direction, image);
-    const double alpha = rz / dot(rows, direction, image);
-    for_chunks(rows, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        x[i] += alpha * direction[i];
-        r[i] -= alpha * image[i];
-      }
-    });
+    go(rz / dot(rows, direction, image));
     ++report.iterations;
-    residual = residual_of();
   }
   std::copy(x.begin(), x.end() - 1, m.solution.begin());
   report.residual = scale > 0 ? residual / scale : 0;

@@ -77,12 +77,19 @@ void number_rows(State<D>& s, PressureSystem<D>& m) {
   }
 }
 
+/// Pa, how the pressure has changed in the last step: the direction in which the solution begins.
+template <int D>
+double last_change(const State<D>& s, int cell) {
+  const double before = s.pressure_before[cell];
+  return before == 0 ? 0 : s.pressure[cell] - before;
+}
+
 /// About an axis a row is the balance of its cell per radian, so that the matrix stays symmetric: storage and
 /// drift times the cell's radius, fluxes times their face's.
 template <int D, bool kAxial>
 void assemble(State<D>& s, PressureSystem<D>& m, double dt) {
   const std::size_t rows = m.cell.size();
-  m.diagonal.resize(rows), m.rhs.resize(rows), m.solution.resize(rows);
+  m.diagonal.resize(rows), m.rhs.resize(rows), m.solution.resize(rows), m.change.resize(rows);
   for (int d = 0; d < D; ++d) m.upper[d].resize(rows), m.lower[d].resize(rows), m.coupling[d].resize(rows);
   const double inverse_h = s.grid.inverse_h, inverse_h2 = inverse_h * inverse_h;
   parallel_parts(rows, 512, [&](std::size_t begin, std::size_t end) {
@@ -123,6 +130,7 @@ void assemble(State<D>& s, PressureSystem<D>& m, double dt) {
       m.diagonal[r] = diagonal;
       m.rhs[r] = rhs;
       m.solution[r] = s.pressure[i];
+      m.change[r] = last_change(s, i);
     }
   });
 }

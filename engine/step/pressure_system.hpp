@@ -9,6 +9,7 @@ template <int D>
 struct PressureSystem {
   std::vector<int> cell;                        ///< row → cell, block by block
   std::vector<double> diagonal, rhs, solution;  ///< 1/(Pa·s), 1/s, Pa
+  std::vector<double> change;                   ///< Pa, in which direction the solution is looked for first
   std::array<std::vector<int>, D> upper;        ///< row of the neighbour in +d, or −1
   std::array<std::vector<int>, D> lower;        ///< row of the neighbour in −d, or −1
   std::array<std::vector<double>, D> coupling;  ///< ≤ 0, to the upper neighbour

@@ -263,8 +263,9 @@ struct State {
   Field<CellSums> cell_sums;
   Field<CellSums> fixed_cell;
   Field<CellState> cell;
-  Field<double> pressure;      ///< Pa per cell; 0 in air
-  Field<double> pressure_old;  ///< Pa, at the start of the step
+  Field<double> pressure;         ///< Pa per cell; 0 in air
+  Field<double> pressure_old;     ///< Pa, at the start of the step
+  Field<double> pressure_before;  ///< Pa, at the start of the step before; 0 where there was none
   PressureSystem<D> pressure_system;
   Multigrid<D> multigrid;  ///< of the pressure system
 

@@ -42,18 +42,31 @@ class Stopwatch {
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
+/// The pressure of the last two steps' ends becomes that of their starts.
 template <int D>
-void copy_pressure(const State<D>& s, const Field<double>& from, Field<double>& to) {
+void keep_pressure(State<D>& s) {
   if (!s.has_water) return;
-  s.blocks.all(
-      [&](int b) { s.blocks.cells(s.grid, b, false, [&](int i, const Cell<D>&) { to[i] = from[i]; }); });
+  s.blocks.all([&](int b) {
+    s.blocks.cells(s.grid, b, false, [&](int i, const Cell<D>&) {
+      s.pressure_before[i] = s.pressure_old[i];
+      s.pressure_old[i] = s.pressure[i];
+    });
+  });
+}
+
+template <int D>
+void restore_pressure(State<D>& s) {
+  if (!s.has_water) return;
+  s.blocks.all([&](int b) {
+    s.blocks.cells(s.grid, b, false, [&](int i, const Cell<D>&) { s.pressure[i] = s.pressure_old[i]; });
+  });
 }
 
 /// Velocities on the faces at the end of the step, and the pressure that goes with them. Returns the time
 /// that the step may take; 0 if there is none.
 template <int D>
 double solve_velocities(State<D>& s, double dt, PressureReport& report, Stopwatch& clock) {
-  copy_pressure(s, s.pressure, s.pressure_old);
+  keep_pressure(s);
   for (int cuts = 0; cuts <= kMostCuts; ++cuts, dt *= 0.5) {
     predict_velocities(s, dt);  // both momentum balances, drag inside
     press_plates(s, dt);        // what plates hold moves as one
@@ -65,7 +78,7 @@ double solve_velocities(State<D>& s, double dt, PressureReport& report, Stopwatc
     const bool fits = !travels_too_far(s, dt);
     clock.lap(Phase::velocities);
     if (fits) return dt;
-    copy_pressure(s, s.pressure_old, s.pressure);
+    restore_pressure(s);
     ++s.interventions.cut_steps;
   }
   return 0;
