@@ -140,7 +140,8 @@ class WalkTest(ServerTest):
         self.assertIsNone(page["next_page_token"])
         named = self.server.get("/v1/runs?name_prefix=paged%201").json()["runs"]
         self.assertEqual([run["id"] for run in named], [ids[1]])
-        self.server.wait_for(ids[2], "succeeded")
+        for run in ids:
+            self.server.wait_for(run, "succeeded")
         done = self.server.get("/v1/runs?status=succeeded&label=paging").json()["runs"]
         self.assertEqual(len(done), 3)
         self.assertEqual(self.server.get("/v1/runs?created_after=2999-01-01T00:00:00Z").json()["runs"], [])
