@@ -101,6 +101,11 @@ class Walls {
 
   /// Recomputes the folds; call after the last close/open.
   void rebuild(const Grid<D>& grid);
+  /// Gives their memory back, where nobody will ask for them: all cells are as if no wall were in reach.
+  void drop_folds() {
+    folds_ = {};
+    fold_of_ = Field<std::int32_t>(fold_of_.size());
+  }
   /// What goes with momenta, forces and velocities of component d when they are mirrored.
   double sign(int d, const Fold& fold) const {
     const bool turned = fold.normal_wall >= 0 && !separated(d, fold.normal_wall);

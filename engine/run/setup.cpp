@@ -202,6 +202,8 @@ void set_walls(const Scene& scene, const Stage& stage, State<D>& s) {
   s.water_walls = std::move(walls.water);
   s.soil_walls = std::move(walls.soil);
   s.volume = kernel_volumes<D>(s.grid, s.water_walls, s.constants.kernel, scene.numerics.points_per_cell);
+  // Only water, what counts its room and fixed grains measured with its kernels fold at them.
+  if (!s.has_water && !s.counts_room && s.fixed.size() == 0) s.water_walls.drop_folds();
   if (s.ports.empty()) make_ports(walls.ports, s);
   for (const Port<D>& port : s.ports) s.water_walls.set_port_open(port.d, port.face, port.open);
 }
