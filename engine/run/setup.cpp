@@ -143,6 +143,19 @@ void carry_gradient(const Scene& scene, Set& set) {
   }
 }
 
+/// Part of the domain from which on its fields take large pages.
+constexpr double kFull = 0.5;
+
+template <int D>
+void wish_large_pages_if_full(State<D>& s) {
+  activate_blocks(s);
+  const double active = static_cast<double>(s.blocks.count()) * Blocks<D>::kCells;
+  if (active < kFull * static_cast<double>(s.grid.count())) return;
+  for (int d = 0; d < D; ++d)
+    wish_large_pages(s.sums[d]), wish_large_pages(s.flow[d]), wish_large_pages(s.speeds[d]);
+  wish_large_pages(s.cell_sums), wish_large_pages(s.cell);
+}
+
 }  // namespace
 
 template <int D>
@@ -171,6 +184,7 @@ State<D> make_state(const Scene& scene) {
   s.pressure = Field<double>(s.grid.count());
   s.pressure_old = Field<double>(s.grid.count());
   s.pressure_before = Field<double>(s.grid.count());
+  wish_large_pages_if_full(s);
   for (const Load& load : scene.loads)
     if (load.kind == Load::Kind::traction)
       s.loads.push_back(make_load<D>(scene, load, s));
