@@ -7,7 +7,8 @@ Clients come and go: times with and without them alternate, so that what else th
 runs' speed is compared within each pair. Each client downloads RATE at most. The processor time of runs, service, nginx
 and clients is told apart: clients belong on other machines, so what they themselves take of this one is not counted
 against the service (`less than alone` tells it with and without). What pollers measure includes their own waiting for a
-processor, which is told beside it.
+processor, which is told beside it. Service, nginx and each kind of client have a session of their own, as on machines of
+their own or as systemd starts them: where kernels share processors out between sessions, niceness counts only within one.
 """
 
 import argparse
@@ -87,13 +88,13 @@ class Load:
 
     def __init__(self, options, folder):
         self.server, self.key, done, self.running = prepare(options, folder)
-        self.nginx = NginxProcess(folder + "/nginx", self.server.address.port).start()
+        self.nginx = NginxProcess(folder + "/nginx", self.server.address.port, alone=True).start()
         facts = {"ids": [f"{k:016x}" for k in range(options.runs - 1)], "running": self.running, "large": done,
                  "rate": options.megabytes_per_s * 1e6}
         self.clients = {kind: subprocess.Popen(
             [sys.executable, os.path.join(os.path.dirname(os.path.abspath(__file__)), "load_clients.py"), str(self.nginx.port),
              folder + "/nginx/cert", self.key, kind, json.dumps(facts)],
-            stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) for kind in ("pollers", "streams", "downloads")}
+            stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, start_new_session=True) for kind in ("pollers", "streams", "downloads")}
         self.latencies, self.late, self.statuses, self.events, self.bytes = [], [], {}, 0, 0
         self.slower, self.without_clients, self.dearer, self.memory, self.seconds = [], [], [], [], {}
 
@@ -167,6 +168,7 @@ class Load:
 def prepare(options, folder):
     """A server with its runs, two of which compute."""
     server = ServiceProcess(options.quicksand, folder + "/state", ["--workers", "2", "--set", "short_workers=0", "--threads", "1"])
+    server.alone = True
     key = make_key(server.state, "root", "admin")
     headers = {"X-API-Key": key}
     server.start()

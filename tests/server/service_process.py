@@ -30,12 +30,14 @@ class ServiceProcess:
         self.url = None
         self.log_folder = os.path.dirname(state)
         self.environment = {}  # besides this process's own
+        self.alone = False  # in a session of its own, as services are; the kernel shares processors out between sessions
 
     def start(self):
         log = open(os.path.join(self.log_folder, "server.log"), "a")
         self.process = subprocess.Popen(
             [self.executable, "serve", "--port", "auto", "--state", self.state, *self.options],
-            stdout=subprocess.PIPE, stderr=log, text=True, env={**os.environ, **self.environment})
+            stdout=subprocess.PIPE, stderr=log, text=True, env={**os.environ, **self.environment},
+            start_new_session=self.alone)
         log.close()
         line = self.process.stdout.readline()
         assert " serves http" in line, f"no address on the first line: {line!r}"
