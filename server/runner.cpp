@@ -21,8 +21,6 @@ namespace {
 
 /// By which `top` and tests/faults/load.py tell what computes from what serves.
 constexpr const char* run_thread_name = "quicksand-run";
-/// Of what computes, more than the service's own, so that answers go first where all cores are busy.
-constexpr int run_niceness = 10;
 /// Before a worker tries again after the store refused.
 constexpr std::chrono::seconds store_retry{1};
 
@@ -148,7 +146,7 @@ std::shared_ptr<Runner::Active> Runner::take_next(bool short_runs_only) {
 void Runner::work(bool short_runs_only) {
   // Both are inherited by the threads of its runs. In Linux niceness belongs to a thread.
   ::pthread_setname_np(::pthread_self(), run_thread_name);
-  [[maybe_unused]] const int niceness = ::nice(run_niceness);
+  [[maybe_unused]] const int niceness = ::nice(static_cast<int>(settings_.niceness));
   while (const auto active = take_next(short_runs_only)) {
     bell_.ring();
     execute_one(*active);

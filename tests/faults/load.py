@@ -168,7 +168,7 @@ class Load:
 def prepare(options, folder):
     """A server with its runs, two of which compute."""
     server = ServiceProcess(options.quicksand, folder + "/state", ["--workers", "2", "--set", "short_workers=0", "--threads", "1"])
-    server.alone = True
+    server.alone, server.equal = True, []
     key = make_key(server.state, "root", "admin")
     headers = {"X-API-Key": key}
     server.start()
