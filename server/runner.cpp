@@ -192,7 +192,7 @@ Runner::End Runner::compute(Active& active) {
       run.kind == RunKind::tradeoff
           ? execute_tradeoff(text, {}, folder.string(), monitor, {{}, 1, run.budget}, machine)
           : execute(text, {}, folder.string(), monitor, options, Resume::if_possible, machine);
-  monitor.flush();
+  monitor.finish(done.report.frames);
 
   End end;
   end.state = done.faults.empty() ? end_state(done.report.status) : RunState::failed;

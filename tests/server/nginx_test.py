@@ -79,6 +79,8 @@ class NginxTest(ServerTest):
         self.assertEqual(part.headers["Content-Range"], f"bytes 10-99/{size}")
         self.assertEqual(self.call("GET", path, Range="bytes=10-99", If_Range='"other"').body, whole.body)
         self.assertEqual(self.call("GET", path, If_None_Match=etag).status, 304)
+        for other in ("lines=1-2", "bytes=a-b"):  # to be ignored (RFC 9110, 14.2)
+            self.assertEqual(self.call("GET", path, Range=other).body, whole.body)
         past = self.call("GET", path, Range=f"bytes={size}-")
         self.assertEqual((past.status, past.headers["Content-Range"]), (416, f"bytes */{size}"))
         head = self.call("HEAD", path)
