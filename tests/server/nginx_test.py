@@ -137,6 +137,7 @@ class NginxTest(ServerTest):
         return slowest
 
     def test_slow_clients_do_not_reach_the_service(self):
+        alone = self.slowest_of(20)  # what the machine itself makes of it just now
         slow = []
         for k in range(40):
             sock = self.nginx.connect()
@@ -146,8 +147,8 @@ class NginxTest(ServerTest):
         slowest = min(self.slowest_of(20) for _ in range(3))  # other programs may take the machine now and then
         for sock in slow:
             sock.close()
-        print(f"/healthz beside 40 slow clients: at most {slowest * 1000:.0f} ms", flush=True)
-        self.assertLess(slowest, 0.1)
+        print(f"/healthz beside 40 slow clients: at most {slowest * 1000:.0f} ms, without them {alone * 1000:.0f} ms", flush=True)
+        self.assertLess(slowest, max(0.1, 2 * alone))
 
     def test_z_a_service_that_is_down(self):
         """The last one: it stays down."""
