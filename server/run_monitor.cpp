@@ -3,6 +3,8 @@
 #include <spdlog/sinks/basic_file_sink.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
+
 #include "server/run_json.hpp"
 
 namespace quicksand {
@@ -31,8 +33,11 @@ void StoreMonitor::progress(const Progress& now) {
   store_progress();
 }
 
-void StoreMonitor::flush() {
-  if (unwritten_) store_progress();
+void StoreMonitor::finish(std::size_t frames) {
+  const bool began = last_.step > 0;
+  if (!began || (!unwritten_ && frames <= last_.frames)) return;
+  last_.frames = std::max(last_.frames, frames);
+  store_progress();
 }
 
 void StoreMonitor::store_progress() {

@@ -39,8 +39,9 @@ class StoreMonitor final : public RunMonitor {
   void log(const std::string& line) override;
   bool cancelled() override { return signals_.cancel; }
   bool suspended() override { return signals_.suspend || signals_.stopping; }
-  /// Writes the last progress, which the throttle may have held back.
-  void flush();
+  /// The run has left so many frames: writes the last progress, which the throttle may have held back and
+  /// which does not know yet of frames that were still on their way to the file.
+  void finish(std::size_t frames);
 
  private:
   void store_progress();

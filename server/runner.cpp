@@ -2,7 +2,6 @@
 
 #include <pthread.h>
 #include <spdlog/spdlog.h>
-#include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -22,8 +21,6 @@ namespace {
 
 /// By which `top` and tests/faults/load.py tell what computes from what serves.
 constexpr const char* run_thread_name = "quicksand-run";
-/// Of what computes, so that answers go first where all cores are busy.
-constexpr int run_niceness = 10;
 /// Before a worker tries again after the store refused.
 constexpr std::chrono::seconds store_retry{1};
 
@@ -149,7 +146,7 @@ std::shared_ptr<Runner::Active> Runner::take_next(bool short_runs_only) {
 void Runner::work(bool short_runs_only) {
   // Both are inherited by the threads of its runs. In Linux niceness belongs to a thread.
   ::pthread_setname_np(::pthread_self(), run_thread_name);
-  ::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), run_niceness);
+  [[maybe_unused]] const int niceness = ::nice(static_cast<int>(settings_.niceness));
   while (const auto active = take_next(short_runs_only)) {
     bell_.ring();
     execute_one(*active);
@@ -195,7 +192,7 @@ Runner::End Runner::compute(Active& active) {
       run.kind == RunKind::tradeoff
           ? execute_tradeoff(text, {}, folder.string(), monitor, {{}, 1, run.budget}, machine)
           : execute(text, {}, folder.string(), monitor, options, Resume::if_possible, machine);
-  monitor.flush();
+  monitor.finish(done.report.frames);
 
   End end;
   end.state = done.faults.empty() ? end_state(done.report.status) : RunState::failed;

@@ -23,6 +23,7 @@ struct Settings {
   Count short_run_s = 600;
   Count threads_per_run = 0;
   Count points_per_thread = 5000;
+  Count niceness = 10;
 
   Count checkpoint_s = 60;
 

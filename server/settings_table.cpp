@@ -37,6 +37,9 @@ const std::vector<Setting>& settings_table() {
        "times as fast at 1 300 points, 1.2 at 4 000, 1.3 at 10 000 and 1.5 at 150 000; below, the core is "
        "better\n"
        "given to another run."},
+      {Kind::count, "niceness", &Settings::niceness, 0, 19,
+       "How much nicer, as nice(1) counts it, what computes is than the service itself: where runs take all\n"
+       "cores, answers go first. 0: both are equal."},
 
       {Kind::count, "checkpoint_s", &Settings::checkpoint_s, 0, 24 * 3600,
        "Between two checkpoints of a run, s; the first ones come sooner. After a kill, a power loss or a\n"

@@ -106,6 +106,14 @@ Handle create_group(hid_t parent, const std::string& name) {
                 "cannot create group " + name);
 }
 
+Handle create_unnamed_group(hid_t parent) {
+  return Handle(H5Gcreate_anon(parent, H5P_DEFAULT, H5P_DEFAULT), H5Gclose, "cannot create a group");
+}
+
+void give_name(hid_t object, hid_t parent, const std::string& name) {
+  check(H5Olink(object, parent, name.c_str(), H5P_DEFAULT, H5P_DEFAULT), "cannot name " + name);
+}
+
 void put_attribute(hid_t object, const std::string& name, double value) {
   write_attribute(object, name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, scalar_space(), &value);
 }

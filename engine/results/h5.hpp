@@ -53,6 +53,10 @@ void require_whole(hid_t group);
 /// Opens it if it is there.
 Handle create_group(hid_t parent, const std::string& name);
 
+/// In the file of `parent`; lost unless it is given a name.
+Handle create_unnamed_group(hid_t parent);
+void give_name(hid_t object, hid_t parent, const std::string& name);
+
 /// Scalar or one-dimensional attribute; one that exists is overwritten in place and must have the same shape.
 void put_attribute(hid_t object, const std::string& name, double value);
 void put_attribute(hid_t object, const std::string& name, const std::vector<long long>& values);

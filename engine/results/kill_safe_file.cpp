@@ -1,20 +1,17 @@
 #include "engine/results/kill_safe_file.hpp"
 
-#include <sys/stat.h>
 #include <unistd.h>
 
-#include <cstdint>
 #include <stdexcept>
-#include <tuple>
 
 #include "engine/results/disk_space.hpp"
+#include "engine/results/ordered_driver.hpp"
 
 namespace quicksand {
 namespace {
 
-// Metadata kept in memory, so that between two flushes none of it is written: a kill then finds the file as
-// the last flush left it. A frame dirties some 100 kB, which the cache gives up last. What it keeps of older
-// frames takes several times as much memory as in the file, so that it must not grow.
+// A frame dirties some 100 kB of metadata. What is kept of older frames takes several times as much memory as
+// in the file, so that it must not grow.
 constexpr std::size_t metadata_cache_bytes = 1024 * 1024;
 // Half the entries of a symbol-table leaf (40 bytes each) and of a tree node: a frame's arrays fit one leaf,
 // and /frames seldom splits one, which is the moment when a kill could cost names of older frames.
@@ -35,6 +32,7 @@ h5::Handle file_access(const std::string& what) {
   cache.max_size = cache.min_size = metadata_cache_bytes;
   cache.decr_mode = H5C_decr__off;
   h5::check(H5Pset_mdc_config(access.get(), &cache), what);
+  if (!use_ordered_driver(access.get())) throw h5::Error(what);
   return access;
 }
 
@@ -72,30 +70,12 @@ int KillSafeFile::descriptor() const {
   return *static_cast<int*>(pointer);
 }
 
-/// Tells the file's heading where the file will end, before a flush writes what lies behind the old end: HDF5
-/// itself does so last, and a kill between the two leaves names that point beyond the end.
-void KillSafeFile::announce_end() const {
-  haddr_t end = 0;
-  h5::check(H5Fget_eoa(id(), &end), "cannot find the file's end");
-  const int number = descriptor();
-  unsigned char version = 0xff;
-  constexpr off_t version_at = 8;
-  if (pread(number, &version, 1, version_at) != 1 || version > 1) return;
-  const off_t end_at = version == 0 ? 40 : 44;  // HDF5 file format, superblock versions 0 and 1
-  struct stat status {};
-  if (fstat(number, &status) != 0) return;
-  const std::uint64_t stored = end;  // little-endian, as the machine
-  if (status.st_size < static_cast<off_t>(end) && ftruncate(number, static_cast<off_t>(end)) != 0) return;
-  std::ignore = pwrite(number, &stored, sizeof stored, end_at);
-}
-
 void KillSafeFile::store(std::size_t bytes, const std::function<void()>& work) {
   if (broken_) throw std::runtime_error("an earlier write failed");
   reserve_space(descriptor(), bytes);
   try {
     work();
-    announce_end();
-    h5::check(H5Fflush(id(), H5F_SCOPE_LOCAL), "cannot flush");
+    flush();
   } catch (...) {
     broken_ = true;
     turn_into_memory(descriptor());
@@ -103,6 +83,8 @@ void KillSafeFile::store(std::size_t bytes, const std::function<void()>& work) {
   }
   release_reserved(descriptor());
 }
+
+void KillSafeFile::flush() const { h5::check(H5Fflush(id(), H5F_SCOPE_LOCAL), "cannot flush"); }
 
 void KillSafeFile::to_disk() const {
   if (fsync(descriptor()) != 0) throw std::runtime_error("cannot write the results to the disk");

@@ -24,6 +24,8 @@ class KillSafeFile {
   /// std::runtime_error and nothing has changed. A failure in `work` leaves on disk what was there, and
   /// nothing can be written any more.
   void store(std::size_t bytes, const std::function<void()>& work);
+  /// In `work`: what was written so far is on disk before what comes next. See ordered_driver.hpp.
+  void flush() const;
   /// What was stored survives a power loss from here on.
   void to_disk() const;
   void close();
@@ -31,7 +33,6 @@ class KillSafeFile {
  private:
   explicit KillSafeFile(h5::Handle file) : file_(std::move(file)) {}
   int descriptor() const;
-  void announce_end() const;
 
   h5::Handle file_;
   bool broken_ = false;

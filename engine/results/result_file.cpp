@@ -144,14 +144,20 @@ struct ResultFile::State {
     file.store(bytes, work);
   }
 
+  /// The frame is whole on disk before it has a name, and has one before it is counted (ordered_driver.cpp).
   void put_frame(const Frame& frame) {
     const std::string name = frame_name(frame.index);
     if (series) series->store();
     const Vtkhdf::Rows rows = vtkhdf->append(frame);
-    const h5::Handle group = h5::create_group(frames.get(), name);
+    const bool named = h5::exists(frames.get(), name);
+    const h5::Handle group =
+        named ? h5::create_group(frames.get(), name) : h5::create_unnamed_group(frames.get());
     h5::put_attribute(group.get(), "time", frame.time);
     h5::put_attribute(group.get(), "stage", frame.stage);
     vtkhdf->put_views(group.get(), rows);
+    file.flush();
+    if (!named) h5::give_name(group.get(), frames.get(), name);
+    vtkhdf->count_frame();
   }
 
   /// Frames and samples of an interrupted run that this one, ended sooner, has not reached.

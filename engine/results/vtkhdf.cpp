@@ -190,8 +190,9 @@ void Vtkhdf::append_step(const Frame& frame, const Rows& rows) {
   cell_offsets_.append(1, H5T_NATIVE_LLONG, first_cell.data());
   id_offsets_.append(1, H5T_NATIVE_LLONG, first_id.data());
   for (auto& [name, offsets] : array_offsets_) offsets.append(static_cast<long long>(rows.points));
-  h5::put_attribute(steps_.get(), "NSteps", std::vector<long long>{++frames_});
 }
+
+void Vtkhdf::count_frame() { h5::put_attribute(steps_.get(), "NSteps", std::vector<long long>{++frames_}); }
 
 void Vtkhdf::put_views(hid_t group, const Rows& rows) const {
   h5::put_view(group, "position", *points_, "/VTKHDF/Points", rows.points, rows.count);

@@ -27,6 +27,8 @@ class Vtkhdf {
 
   /// The first frame fixes the fields; a later one with others is a std::logic_error.
   Rows append(const Frame& frame);
+  /// The frame just appended is part of the file from here on.
+  void count_frame();
 
   /// What of it is not in the file, or would have to be found out.
   struct Extent {

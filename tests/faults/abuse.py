@@ -10,12 +10,12 @@ import argparse
 import concurrent.futures
 import copy
 import json
+import multiprocessing
 import os
 import random
 import socket
 import sys
 import tempfile
-import threading
 import time
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "../server"))
@@ -33,24 +33,33 @@ def request(method, path, headers=b"", body=b""):
     return head + b"\r\n" + body
 
 
-class Watch(threading.Thread):
-    """Asks /healthz all the time and keeps the slowest answer."""
+def watch(server, ended, slowest):
+    """Asks /healthz all the time and keeps the slowest answer; -1 when one is wrong."""
+    os.setsid()
+    while not ended.is_set():
+        begin = time.monotonic()
+        if server.get("/healthz").status != 200:
+            slowest.value = -1
+            return
+        slowest.value = max(slowest.value, time.monotonic() - begin)
+        time.sleep(0.02)
+
+
+class Watch:
+    """In a process and a session of its own, as it would wait for the many clients in this one."""
 
     def __init__(self, server):
-        super().__init__(daemon=True)
-        self.server, self.slowest, self.ended = server, 0, False
+        self.ended, self.slowest = multiprocessing.Event(), multiprocessing.Value("d", 0)
+        self.process = multiprocessing.Process(target=watch, args=(server, self.ended, self.slowest))
 
-    def run(self):
-        while not self.ended:
-            begin = time.monotonic()
-            assert self.server.get("/healthz").status == 200
-            self.slowest = max(self.slowest, time.monotonic() - begin)
-            time.sleep(0.02)
+    def start(self):
+        self.process.start()
 
     def end(self):
-        self.ended = True
-        self.join()
-        return self.slowest
+        self.ended.set()
+        self.process.join()
+        assert self.process.exitcode == 0 and self.slowest.value > 0
+        return self.slowest.value
 
 
 def probe_table(server):
@@ -231,7 +240,9 @@ def main():
         text = file.read()
     with tempfile.TemporaryDirectory(prefix="quicksand-abuse-") as folder:
         server = ServiceProcess(options.quicksand, folder + "/state",
-                                ["--workers", "1", "--set", f"max_queued={MAX_QUEUED}", "--log-level", "error"]).start()
+                                ["--workers", "1", "--set", f"max_queued={MAX_QUEUED}", "--log-level", "error"])
+        server.alone = True
+        server.start()
         try:
             cases = [json.loads(text)] + [server.get(case["href"]).json() for case in server.get("/v1/cases").json()["cases"]]
             run_id = server.call("POST", "/v1/runs", text).json()["id"]

@@ -2,16 +2,21 @@
 
 usage: load_clients.py PORT CERTIFICATE KEY pollers|streams|downloads FACTS; then a line with seconds on standard input
 starts them, and a line of JSON on standard output tells what they met.
+
+Only pollers, who measure, have the priority of their caller: who only has to keep the service busy must not take the
+processor before those who take the time of it.
 """
 
 import asyncio
 import contextlib
 import json
+import os
 import ssl
 import sys
 import time
 
 POLLERS, STREAMS, DOWNLOADS = 64, 16, 8
+LOWEST_PRIORITY = 19
 SIZE, RANGE = 10**9, 16 << 20
 
 
@@ -23,6 +28,7 @@ class Clients:
 
     def forget(self):
         self.latencies, self.statuses, self.events, self.bytes = [], {}, 0, 0
+        self.late = []  # s that the pollers themselves woke too late: they waited for a processor
 
     async def connect(self):
         return await asyncio.open_connection("127.0.0.1", self.port, ssl=self.context, server_hostname="lab.example",
@@ -55,8 +61,14 @@ class Clients:
             if n % 900 == 0:  # nginx ends a connection after 1000 requests
                 connection[1].close()
                 connection = await self.connect()
-            await asyncio.sleep(max(0, begin + 1 - time.monotonic()))
+            await self.sleep_until(begin + 1)
         connection[1].close()
+
+    async def sleep_until(self, due):
+        left = due - time.monotonic()
+        await asyncio.sleep(max(0, left))
+        if left > 0:
+            self.late.append(time.monotonic() - due)
 
     async def stream(self, k):
         running = self.facts["running"]
@@ -101,11 +113,13 @@ class Clients:
 
 def main():
     port, certificate, key, kind, facts = sys.argv[1:]
+    if kind != "pollers":
+        os.nice(LOWEST_PRIORITY)
     clients = Clients(int(port), certificate, key, json.loads(facts))
     for line in sys.stdin:
         asyncio.run(clients.run(kind, float(line)))
-        print(json.dumps({"latencies": clients.latencies, "statuses": clients.statuses, "events": clients.events,
-                          "bytes": clients.bytes}), flush=True)
+        print(json.dumps({"latencies": clients.latencies, "late": clients.late, "statuses": clients.statuses,
+                          "events": clients.events, "bytes": clients.bytes}), flush=True)
 
 
 if __name__ == "__main__":

@@ -19,10 +19,10 @@ def free_ports(count):
 
 
 class NginxProcess:
-    """In front of a service at `upstream`; `port` for TLS, `plain` without."""
+    """In front of a service at `upstream`; `port` for TLS, `plain` without; `alone`: in a session of its own."""
 
-    def __init__(self, folder, upstream):
-        self.folder, self.upstream, self.process = folder, upstream, None
+    def __init__(self, folder, upstream, alone=False):
+        self.folder, self.upstream, self.alone, self.process = folder, upstream, alone, None
         os.makedirs(folder)
 
     def start(self):
@@ -40,7 +40,7 @@ class NginxProcess:
     def listens(self):
         """False when somebody else took a port meanwhile: any connection on this machine may."""
         self.process = subprocess.Popen(["nginx", "-p", self.folder, "-c", "main.conf", "-e", "error.log"],
-                                        stderr=subprocess.DEVNULL)
+                                        stderr=subprocess.DEVNULL, start_new_session=self.alone)
         deadline = time.monotonic() + 30
         while self.process.poll() is None:
             if os.path.exists(self.folder + "/pid"):  # written once it has its ports

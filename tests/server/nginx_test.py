@@ -79,6 +79,8 @@ class NginxTest(ServerTest):
         self.assertEqual(part.headers["Content-Range"], f"bytes 10-99/{size}")
         self.assertEqual(self.call("GET", path, Range="bytes=10-99", If_Range='"other"').body, whole.body)
         self.assertEqual(self.call("GET", path, If_None_Match=etag).status, 304)
+        for other in ("lines=1-2", "bytes=a-b"):  # to be ignored (RFC 9110, 14.2)
+            self.assertEqual(self.call("GET", path, Range=other).body, whole.body)
         past = self.call("GET", path, Range=f"bytes={size}-")
         self.assertEqual((past.status, past.headers["Content-Range"]), (416, f"bytes */{size}"))
         head = self.call("HEAD", path)
@@ -135,6 +137,7 @@ class NginxTest(ServerTest):
         return slowest
 
     def test_slow_clients_do_not_reach_the_service(self):
+        alone = self.slowest_of(20)  # what the machine itself makes of it just now
         slow = []
         for k in range(40):
             sock = self.nginx.connect()
@@ -144,8 +147,8 @@ class NginxTest(ServerTest):
         slowest = min(self.slowest_of(20) for _ in range(3))  # other programs may take the machine now and then
         for sock in slow:
             sock.close()
-        print(f"/healthz beside 40 slow clients: at most {slowest * 1000:.0f} ms", flush=True)
-        self.assertLess(slowest, 0.1)
+        print(f"/healthz beside 40 slow clients: at most {slowest * 1000:.0f} ms, without them {alone * 1000:.0f} ms", flush=True)
+        self.assertLess(slowest, max(0.1, 2 * alone))
 
     def test_z_a_service_that_is_down(self):
         """The last one: it stays down."""

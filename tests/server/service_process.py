@@ -30,12 +30,15 @@ class ServiceProcess:
         self.url = None
         self.log_folder = os.path.dirname(state)
         self.environment = {}  # besides this process's own
+        self.equal = ["--set", "niceness=0"]  # a test that waits for a run would wait for the tests beside it
+        self.alone = False  # in a session of its own, as services are; the kernel shares processors out between sessions
 
     def start(self):
         log = open(os.path.join(self.log_folder, "server.log"), "a")
         self.process = subprocess.Popen(
-            [self.executable, "serve", "--port", "auto", "--state", self.state, *self.options],
-            stdout=subprocess.PIPE, stderr=log, text=True, env={**os.environ, **self.environment})
+            [self.executable, "serve", "--port", "auto", "--state", self.state, *self.equal, *self.options],
+            stdout=subprocess.PIPE, stderr=log, text=True, env={**os.environ, **self.environment},
+            start_new_session=self.alone)
         log.close()
         line = self.process.stdout.readline()
         assert " serves http" in line, f"no address on the first line: {line!r}"
@@ -103,7 +106,7 @@ class ServiceProcess:
         status = int(head.split()[1]) if head.startswith(b"HTTP/") else 0
         return status, head.decode("latin-1"), body
 
-    def wait_for(self, run_id, *states, seconds=60):
+    def wait_for(self, run_id, *states, seconds=180):
         """The run once it is in one of `states`."""
         deadline = time.monotonic() + seconds
         while time.monotonic() < deadline:

@@ -76,14 +76,15 @@ class WalkTest(ServerTest):
             body = self.server.get(result["href"]).body
             self.assertEqual(len(body), result["bytes"])
             self.assertEqual(hashlib.sha256(body).hexdigest(), result["sha256"])
-        self.check_file(results[0]["href"], text)
+        self.check_file(results[0]["href"], text, run["progress"]["frames"])
 
-    def check_file(self, href, text):
+    def check_file(self, href, text, frames):
         path = os.path.join(self.folder, "downloaded.vtkhdf")
         with open(path, "wb") as file:
             file.write(self.server.get(href).body)
         with h5py.File(path) as file:
             self.assertGreaterEqual(len(file["frames"]), 5)
+            self.assertEqual(len(file["frames"]), frames)
             first = file["frames/000000"]
             self.assertEqual(first["position"].shape, (first["phase"].shape[0], 3))
             self.assertEqual(set(first["phase"][()]), {0, 1})

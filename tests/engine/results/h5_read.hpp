@@ -49,6 +49,10 @@ class File {
     return value;
   }
 
+  bool has(const std::string& group, const std::string& name) const {
+    return H5Lexists(id_, (group + "/" + name).c_str(), H5P_DEFAULT) > 0;
+  }
+
  private:
   hid_t open(const std::string& name) const {
     const hid_t dataset = H5Dopen2(id_, name.c_str(), H5P_DEFAULT);
