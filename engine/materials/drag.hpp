@@ -1,6 +1,5 @@
 #pragma once
-#include <cmath>
-
+#include "engine/grid/lanes.hpp"
 #include "engine/scene/scene.hpp"
 
 namespace quicksand {
@@ -19,20 +18,22 @@ struct Drag {
   /// Pressure gradient per discharge, R/n² = ρw g/k (N·s/m⁴). This is what adds up along a flow path, so
   /// faces average it and multiply by their own n²: a layer's edges, half soil and half water, then resist as
   /// half. `discharge` is n |vw − vs| in m/s; only Ergun's law asks for it.
-  double resistivity(double n, double discharge = 0) const {
+  /// T is double, or lanes of several points.
+  template <class T>
+  QUICKSAND_INLINE T resistivity(const T& n, const std::type_identity_t<T>& discharge = T{}) const {
     switch (law) {
       case PermeabilityLaw::constant:
-        return reference;
+        return all_lanes<T>(reference);
       case PermeabilityLaw::kozeny_carman: {  // k = k0 [n³/(1−n)²]/[n0³/(1−n0)²]
-        const double grains = (1 - n) / (1 - porosity), pores = porosity / n;
+        const T grains = (1 - n) * (1 / (1 - porosity)), pores = porosity / n;
         return reference * grains * grains * pores * pores * pores;
       }
       case PermeabilityLaw::power:  // k = k0 [(1+e)/(1+e0)]^exponent with 1+e = 1/(1−n)
-        return reference * std::pow((1 - n) / (1 - porosity), exponent);
+        return reference * power<T>((1 - n) * (1 / (1 - porosity)), exponent);
       case PermeabilityLaw::ergun:  // S. Ergun 1952: ∇p = 150 μ(1−n)²/(n³d²) U + 1.75 ρw(1−n)/(n³d) U²
         return (viscous * (1 - n) + inertial * discharge) * (1 - n) / (n * n * n);
     }
-    return 0;
+    return T{};
   }
 
   /// R(n) of [FMS19], N·s/m⁴: the force on the grains per bulk volume and relative velocity.

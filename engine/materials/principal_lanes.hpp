@@ -49,10 +49,11 @@ class PrincipalLanes<3> {
       size = where(absolute > size, absolute, size);
     }
     size = where(size > zero, size, one);
-    for (int i = 0; i < 3; ++i) value[i] = s[i] / size;  // so that no square comes to nothing
+    const BatchLanes inverse = 1.0 / size;  // so that no square comes to nothing
+    for (int i = 0; i < 3; ++i) value[i] = s[i] * inverse;
     axis_ = {{{one, zero, zero}, {zero, one, zero}, {zero, zero, one}}};
-    std::array<BatchLanes, 3> off{s[4] / size, s[5] / size,
-                                  s[3] / size};  // opposite the axis that it does not hold: yz, zx, xy
+    // Opposite the axis that it does not hold: yz, zx, xy.
+    std::array<BatchLanes, 3> off{s[4] * inverse, s[5] * inverse, s[3] * inverse};
     for (int sweep = 0; sweep < 4; ++sweep)
       for (int r = 2; r >= 0; --r) rotate((r + 1) % 3, (r + 2) % 3, r, off);
     for (BatchLanes& v : value) v *= size;
@@ -69,12 +70,16 @@ class PrincipalLanes<3> {
  private:
   /// Makes the entry of axes p and q, off[r], zero.
   QUICKSAND_INLINE void rotate(int p, int q, int r, std::array<BatchLanes, 3>& off) {
-    const BatchLanes entry = off[r], half = 0.5 * (value[q] - value[p]), zero{};
-    const BatchLanes radius = square_root(half * half + entry * entry);
-    const BatchLanes reach = where(half < zero, half - radius, half + radius);
-    const auto none = reach == zero;
-    const BatchLanes t = where(none, zero, entry / where(none, all_lanes<BatchLanes>(1), reach));
-    const BatchLanes c = 1.0 / square_root(1.0 + t * t), s = t * c;
+    // The angle's double has the cosine |half|/radius and the sine entry/radius.
+    const BatchLanes entry = off[r], half = 0.5 * (value[q] - value[p]), zero{}, one = zero + 1.0;
+    const BatchLanes square = half * half + entry * entry;
+    const auto none = square < kNothing;
+    const BatchLanes inverse = inverse_root(where(none, one, square));
+    const BatchLanes c2 = 0.5 + 0.5 * where(half < zero, -half, half) * inverse;
+    const BatchLanes inverse_c = inverse_root(where(none, one, c2));
+    const BatchLanes c = where(none, one, c2 * inverse_c);
+    const BatchLanes s = where(none, zero, 0.5 * where(half < zero, -entry, entry) * inverse * inverse_c);
+    const BatchLanes t = s * inverse_c;
     value[p] -= t * entry;
     value[q] += t * entry;
     off[r] = zero;
@@ -87,6 +92,8 @@ class PrincipalLanes<3> {
       axis_[q][i] = s * vp + c * vq;
     }
   }
+  /// Of a sum of squares, where the largest entry is one.
+  static constexpr double kNothing = 1e-60;
   std::array<std::array<BatchLanes, 3>, 3> axis_;  ///< [value][component]
 };
 
