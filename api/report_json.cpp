@@ -58,6 +58,7 @@ Json to_json(const Ledger& l) {
           {"water_volume_initial", l.water_volume_initial},
           {"water_volume", l.water_volume},
           {"water_volume_drift_max", l.water_volume_drift_max},
+          {"water_volume_drift", l.water_volume_drift},
           {"momentum_change", l.momentum_change},
           {"impulse_gravity", l.impulse_gravity},
           {"impulse_walls", l.impulse_walls},
@@ -163,6 +164,7 @@ std::string report_json(const Scene& scene, const Plan& plan, const RunReport& r
                        {"message", report.failure.message},
                        {"time", report.failure.time},
                        {"place", report.failure.place}};
+  json["cautions"] = report.cautions;
   json["headline"] = report.heave.empty() ? Json(nullptr) : to_json(report.heave.front());
   json["error_estimate"] = error_estimate ? to_json(*error_estimate) : Json(nullptr);
   json["quasi_static"] = Json::array();

@@ -72,6 +72,13 @@ std::string error_text(const Json& estimate) {
   return text;
 }
 
+std::string cautions_text(const Json& cautions) {
+  std::string text;
+  for (const Json& caution : cautions)
+    if (caution.is_string()) text += "  CAUTION: " + caution.get<std::string>() + "\n";
+  return text;
+}
+
 std::string cost_text(const Json& report) {
   const double wall = number(report, "wall_seconds");
   return fmt::format("  Simulated {:.4g} s in {} ({:.0f} steps, {:.3g} point-steps/s)\n",
@@ -94,6 +101,8 @@ std::string headline_text(const std::string& report) {
   if (const auto ledger = json.find("ledger"); ledger != json.end() && ledger->is_object())
     text += fmt::format("  Water volume drifted by {:.2g} % at most\n",
                         100 * number(*ledger, "water_volume_drift_max"));
+  if (const auto cautions = json.find("cautions"); cautions != json.end() && cautions->is_array())
+    text += cautions_text(*cautions);
   return text + cost_text(json);
 }
 

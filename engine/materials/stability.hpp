@@ -40,8 +40,8 @@ double shear_step_limit(const SaturatedSoil& soil, double h);
 double fast_wave_step_limit(const SaturatedSoil& soil, double h);
 
 /// Edge (m) of the cells by which waves are bounded, in cells of h metres: h, or what the lightest faces of
-/// linear hats leave of it.
-double bounding_edge(Kernel kernel, double h);
+/// linear hats leave of it; half of it with one point per cell and axis.
+double bounding_edge(Kernel kernel, double h, int points_per_cell);
 
 /// The bounds tabulated over porosity, for one soil; cheap enough to ask for every point. Soil whose
 /// stiffness varies has a table for every factor of four in stiffness.

@@ -21,7 +21,7 @@ struct StepCost {
 struct Calibration {
   /// By SceneKind; the defaults are those of one 2.6 GHz core (tests/bench/run, `quicksand calibrate`).
   std::array<StepCost, kSceneKinds> cost{
-      {{25e-6, 160e-9}, {35e-6, 160e-9}, {25e-6, 140e-9}, {40e-6, 700e-9}, {50e-6, 500e-9}, {40e-6, 480e-9}}};
+      {{8e-6, 125e-9}, {8e-6, 120e-9}, {17e-6, 135e-9}, {30e-6, 275e-9}, {15e-6, 215e-9}, {27e-6, 275e-9}}};
   double seconds(const Scene& scene, double steps, double points) const {
     const StepCost& c = cost[static_cast<std::size_t>(kind_of(scene))];
     return steps * (c.step + c.point * points);

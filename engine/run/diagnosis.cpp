@@ -107,6 +107,30 @@ Failure unstable_step(const Scene& scene, const State<D>& s, const StepBound& wa
                   step_remedy(scene));
 }
 
+template <int D>
+Failure unsound(const Scene& scene, const State<D>& s, const Unsound& what, double shortened) {
+  if (what.kind == Unsound::Kind::energy)
+    return describe(
+        scene, s,
+        "Motion and strain hold " + number(what.figure) + " J, more than the " + number(what.bound) +
+            " J that can have been put in,",
+        scene.numerics.pressure == PressureScheme::explicit_scheme
+            ? "The likely cause is the explicit pressure, which cannot hold films and jets of a few "
+              "cells: leave numerics.pressure out."
+            : step_remedy(scene, shortened));
+  const std::string rigid = scene.water.bulk_modulus ? "" : " water is incompressible here, and";
+  return describe(
+      scene, s,
+      "The water pressure reached " + number(what.figure) + " Pa; weight, loads and motion can cause " +
+          number(what.bound) + " Pa,",
+      (shortened < 1 ? in_vain(shortened) + ". " : "") + "The likely cause is water without room:" + rigid +
+          " something (a plate, a closing gate, a filling inflow) presses on it where it can "
+          "neither leave nor rise. Let it out (a free surface, an open side, a reservoir), or give "
+          "materials.water.bulk_modulus a number.");
+}
+
+template Failure unsound<2>(const Scene&, const State<2>&, const Unsound&, double);
+template Failure unsound<3>(const Scene&, const State<3>&, const Unsound&, double);
 template Failure unstable_step<2>(const Scene&, const State<2>&, const StepBound&);
 template Failure unstable_step<3>(const Scene&, const State<3>&, const StepBound&);
 

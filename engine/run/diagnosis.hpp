@@ -2,6 +2,7 @@
 // Why a run ended before its time, in plain words: when, where, which phase, likely cause, what to change.
 
 #include "engine/run/run.hpp"
+#include "engine/run/soundness.hpp"
 #include "engine/step/state.hpp"
 
 namespace quicksand {
@@ -15,6 +16,8 @@ Failure collapsed_step(const Scene& scene, const State<D>& state, const StepBoun
                        double shortened = 1);
 template <int D>
 Failure pressure_not_found(const Scene& scene, const State<D>& state, double residual, double shortened = 1);
+template <int D>
+Failure unsound(const Scene& scene, const State<D>& state, const Unsound& what, double shortened);
 /// Only a fixed numerics.time_step can be above the stability bound.
 template <int D>
 Failure unstable_step(const Scene& scene, const State<D>& state, const StepBound& wave);

@@ -103,8 +103,19 @@ void LedgerKeeper<D>::measure(const State<D>& s, const StepReport<D>& step) {
   // What gaps finer than the cells took of the room at the start is no drift.
   const double held = water_held(s),
                gaps = l.water_volume_initial - l.water_mass_initial / s.constants.water_density;
-  l.water_volume_drift_max = std::max(l.water_volume_drift_max, std::abs(l.water_volume - held - gaps) /
-                                                                    std::max(l.water_volume_initial, held));
+  const double drift = (l.water_volume - held - gaps) / std::max(l.water_volume_initial, held);
+  l.water_volume_drift_max = std::max(l.water_volume_drift_max, std::abs(drift));
+  drift_ = drift;
+}
+
+template <int D>
+void LedgerKeeper<D>::sampled() {
+  Ledger& l = ledger_;
+  drifts_.push_back(drift_);
+  drift_sum_ += drift_;
+  const std::size_t samples = drifts_.size(), first = samples / 2;
+  if (first > (samples - 1) / 2) drift_sum_ -= drifts_[first - 1];
+  l.water_volume_drift = drift_sum_ / static_cast<double>(samples - first);
 }
 
 template class LedgerKeeper<2>;

@@ -14,6 +14,7 @@
 #include "engine/run/outputs.hpp"
 #include "engine/run/setup.hpp"
 #include "engine/run/snapshot.hpp"
+#include "engine/run/soundness.hpp"
 #include "engine/run/stage.hpp"
 #include "engine/run/step_count.hpp"
 #include "engine/run/time_rounding.hpp"
@@ -44,6 +45,7 @@ class Run {
     for (const Stage& stage : scene.stages) end_time_ += stage.duration;
     limits_before_first_step(state_, last_);
     measure_motion(state_, last_);
+    soundness_.emplace(scene_, state_, last_);
     if (options_.resume) load(*options_.resume);
   }
 
@@ -96,7 +98,7 @@ class Run {
   template <class A>
   void keep(A& a) {
     a(stage_, inside_stage_, stage_begin_, end_time_, first_step_, rest_);
-    a(ledger_, watch_, inertia_, last_, easing_, outputs_, count_);
+    a(ledger_, watch_, inertia_, *soundness_, last_, easing_, outputs_, count_);
   }
   /// Makes this state the one that is gone back to. What was held back until now is good, too.
   void keep_good() {
@@ -190,6 +192,9 @@ class Run {
     if (!last_.finite) return not_finite(scene_, state_, easing_.factor());
     ledger_.add(state_, last_);
     inertia_.add(state_, last_);
+    const bool look = outputs_.sample_due(state_.time) || !last_.pressure.converged;
+    if (const auto bad = soundness_->add(state_, last_, ledger_.ledger(), look))
+      return unsound(scene_, state_, *bad, easing_.factor());
     watch_.track(state_);
     if (!last_.pressure.converged)
       return pressure_not_found(scene_, state_, last_.pressure.residual, easing_.factor());
@@ -202,6 +207,8 @@ class Run {
   void write_sample() {
     outputs_.sample(state_.time, [&] {
       ledger_.measure(state_, last_);
+      ledger_.sampled();
+      soundness_->sampled(state_);
       return watch_.sample(state_, last_, ledger_.ledger());
     });
   }
@@ -241,6 +248,8 @@ class Run {
     outputs_.finish();
     ledger_.measure(state_, last_);
     report_.ledger = ledger_.ledger();
+    report_.cautions = soundness_->cautions(report_.ledger);
+    for (const std::string& caution : report_.cautions) monitor_.log(caution);
     report_.heave = watch_.heave();
     report_.quasi_static = inertia_.reports();
     const bool suspended = report_.status == RunStatus::suspended;
@@ -274,6 +283,7 @@ class Run {
   RunMonitor& monitor_;
   State<D> state_;
   LedgerKeeper<D> ledger_;
+  std::optional<Soundness<D>> soundness_;
   Watch<D> watch_;
   InertiaWatch inertia_;
   StepReport<D> last_;

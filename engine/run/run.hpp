@@ -100,6 +100,7 @@ struct Ledger {
   double water_in = 0, water_out = 0, soil_out = 0;   ///< kg, through reservoirs and open sides
   double water_removed = 0, soil_removed = 0;         ///< kg, of bodies that stages removed
   double water_volume_drift_max = 0;        ///< largest change of room − mass/ρw, over V0 or mass/ρw
+  double water_volume_drift = 0;            ///< mean of it (signed) over the second half of the samples
   std::array<double, 3> momentum_change{};  ///< N·s, Σ m v now less at the start; m × inertia if scaled
   std::array<double, 3> impulse_gravity{}, impulse_walls{}, impulse_loads{};  ///< N·s
   std::array<double, 3> impulse_surface{};  ///< N·s, to drops that the water surface carries along
@@ -159,7 +160,8 @@ struct PhaseTime {
 
 struct RunReport {
   RunStatus status = RunStatus::succeeded;
-  Failure failure;  ///< if failed
+  Failure failure;                    ///< if failed
+  std::vector<std::string> cautions;  ///< plain sentences: what about the answer is not as it should be
   Ledger ledger;
   std::vector<HeaveReport> heave;               ///< empty or one
   std::vector<QuasiStaticReport> quasi_static;  ///< per quasi-static stage that was begun

@@ -31,7 +31,7 @@ Constants<D> make_constants(const Scene& scene, const Grid<D>& grid) {
   for (const auto& [name, soil] : scene.soils) {
     c.soils.push_back(SoilMaterial::from(soil, scene.water, usual_stress(scene, soil)));
     c.step_limits.emplace_back(c.soils.back(), c.water_density, c.water_compliance,
-                               bounding_edge(c.kernel, grid.h));
+                               bounding_edge(c.kernel, grid.h, c.points_per_cell));
   }
   return c;
 }
@@ -227,7 +227,7 @@ void scale_limits(State<D>& s) {
   const Constants<D>& c = s.constants;
   for (std::size_t i = 0; i < c.soils.size(); ++i)
     s.constants.step_limits[i] = StepLimit(c.soils[i], c.water_density, c.water_compliance,
-                                           bounding_edge(c.kernel, s.grid.h), c.inertia);
+                                           bounding_edge(c.kernel, s.grid.h, c.points_per_cell), c.inertia);
 }
 
 template <int D>

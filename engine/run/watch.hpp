@@ -18,10 +18,12 @@ class LedgerKeeper {
   void add(const StageChange<D>& change);
   /// Volumes, masses, energies; before each sample.
   void measure(const State<D>& state, const StepReport<D>& step);
+  /// What was measured last is a sample.
+  void sampled();
   const Ledger& ledger() const { return ledger_; }
   template <class A>
   void keep(A& a) {
-    a(ledger_, start_momentum_, driving_impulse_);
+    a(ledger_, start_momentum_, driving_impulse_, drift_, drifts_, drift_sum_);
   }
 
  private:
@@ -29,6 +31,9 @@ class LedgerKeeper {
   Ledger ledger_;
   Vec<D> start_momentum_{};
   double driving_impulse_ = 0;  ///< N·s, of weight and loads, and the momentum at the start
+  double drift_ = 0;            ///< –, of the water's volume, measured last
+  std::vector<double> drifts_;  ///< –, of the water's volume, every sample
+  double drift_sum_ = 0;        ///< –, of the second half of them
 };
 
 /// How far a body has moved; once it is removed or has left, how far it had.

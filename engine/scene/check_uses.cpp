@@ -109,6 +109,11 @@ void check_materials(const Scene& scene, Faults& faults) {
     if (scene.bodies[k].rotation_rate != 0 && scene.domain.dimension == Dimension::axisymmetric)
       faults.push_back({at_index("bodies", k, "/rotation_rate"),
                         "a body that turns in the plane is not symmetric about the axis: remove it"});
+  if (moving_soil && scene.numerics.kernel == Kernel::linear && scene.numerics.points_per_cell == 1)
+    faults.push_back(
+        {"/numerics/points_per_cell",
+         "1 leaves soil with the linear kernel unstable at any step, as one point feels nothing of the "
+         "strain between the faces: give at least 2, or the quadratic kernel"});
   if (scene.numerics.pressure == PressureScheme::explicit_scheme && !scene.water.bulk_modulus)
     faults.push_back(
         {"/numerics/pressure",

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <iostream>
 
 #include "tests/engine/small_scene.hpp"
 #include "tests/verification/recorder.hpp"
@@ -32,11 +34,19 @@ Recorded settled(const Scene& s, double given, double moved) {
   EXPECT_EQ(r.report.ledger.retries, 0);
   EXPECT_LE(r.report.ledger.water_volume_drift_max, kDrift);
   const auto energy = r.results.series("ledger.energy"), kinetic = r.results.series("ledger.energy_kinetic");
-  for (std::size_t k = energy.size() / 10; k < energy.size(); ++k) {
-    EXPECT_LE(kinetic[k], 1e-6 * moved) << k;
-    EXPECT_LE(energy[k], energy.front() + given) << k;
-    EXPECT_NEAR(energy[k], energy.back(), 1e-3 * moved) << k;
-  }
+  const std::size_t first = energy.size() / 4;  // the column consolidates for eight of its time constants
+  const auto at_most = [&](std::size_t from, const std::vector<double>& values) {
+    return *std::max_element(values.begin() + static_cast<std::ptrdiff_t>(from), values.end());
+  };
+  EXPECT_LE(at_most(0, energy), energy.front() + given);
+  EXPECT_LE(at_most(first, kinetic), 1e-6 * moved);
+  EXPECT_LE(at_most(first, energy), energy.back() + 1e-3 * moved);
+  EXPECT_GE(*std::min_element(energy.begin() + static_cast<std::ptrdiff_t>(first), energy.end()),
+            energy.back() - 1e-3 * moved);
+  std::cout << "drift at most " << r.report.ledger.water_volume_drift_max << ", at rest "
+            << r.report.ledger.water_volume_drift << "; energy above the start "
+            << at_most(0, energy) - energy.front() << " of " << given << " J, kinetic at the end "
+            << kinetic.back() << " J\n";
   return r;
 }
 

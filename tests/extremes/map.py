@@ -13,7 +13,7 @@ import ranges  # noqa: E402
 
 HERE = pathlib.Path(__file__).resolve().parent
 MAIN = ("permeability", "bulk_modulus", "young_modulus", "porosity", "gravity", "cell_size", "viscosity")
-LOOK = {"ok": ("#9bd19b", 2), "refused": ("#4477cc", 6), "diagnosed": ("#eebb22", 6), "open": ("#dd8855", 2),
+LOOK = {"ok": ("#9bd19b", 2), "told": ("#cfcf55", 4), "refused": ("#4477cc", 6), "diagnosed": ("#eebb22", 6), "open": ("#dd8855", 2),
         "wrong": ("#cc0000", 14)}
 
 

@@ -58,6 +58,7 @@ LIMITS = {"stress": {"young_modulus": (1, 1e13), "bulk_modulus": (1e3, 1e12), "c
           "time": {"value": (1e-14, 10), "drift_time": (0, 1e6)},
           "speed": {"velocity": (0, 1e3), "plate_velocity": (0, 1e3)},
           "gravity": {"gravity": (0, 1e4)}, "viscosity": {"viscosity": (0, 1e4)},
+          "force": {"plate_force": (0, 1e12)}, "interval": {"frame_interval": (0, 1e10), "series_interval": (0, 1e10)},
           "length": {"cell_size": (9e-7, 1.1e5), "grain_size": (1e-7, 1), "max": (0, 1e7), "head": (0, 1e7)}}
 
 
@@ -70,6 +71,7 @@ def numbers(value):
 def possible(rng, case):
     """Factors of length and time that keep every number of the case within the format, or none."""
     found = []
+    axes = 1 if case["domain"].get("dimension") == "plane_strain" else 2
 
     def walk(part):
         for key, value in part.items() if isinstance(part, dict) else enumerate(part):
@@ -86,7 +88,8 @@ def possible(rng, case):
         length = 2.0 ** round(math.log2(10 ** rng.uniform(-6, 5) / case["domain"]["cell_size"]))
         speed = 2.0 ** round(math.log2(math.sqrt(length)) + rng.uniform(-6, 6))
         factor = {"stress": speed**2, "speed": speed, "gravity": speed**2 / length, "viscosity": speed * length,
-                  "length": length, "rate": speed / length, "time": length / speed}
+                  "length": length, "rate": speed / length, "time": length / speed, "interval": length / speed,
+                  "force": speed**2 * length ** axes}
         if all(low <= factor[kind] * v <= high for kind, low, high, v in found):
             return length, length / speed
     return None

@@ -106,6 +106,9 @@ class Sketch:
             chosen["transfer"] = "apic"
         elif rng.random() < 0.2:
             chosen["pic_rate"] = rng.choice((0, 1, 100, 1e6))
+        moving = any(b["kind"] != "water" and not b.get("fixed") for b in made["bodies"])
+        if moving and chosen.get("kernel") == "linear" and self.lot >= SENSELESS:
+            chosen["points_per_cell"] = max(chosen["points_per_cell"], 2)  # one is refused
         if wet and made["materials"]["water"]["bulk_modulus"] != "incompressible" and rng.random() < 0.2:
             chosen["pressure"] = "explicit"
         elif wet and rng.random() < 0.2:

@@ -61,6 +61,10 @@ json judge(const json& asked) {
     answer["why"].push_back(done.report.failure.code + ": " + done.report.failure.message);
     if (!explains(done.report.failure)) answer["broken"].push_back("failure without a diagnosis");
   }
+  for (const std::string& caution : done.report.cautions) {
+    if (answer["end"] == "ok") answer["end"] = "told";
+    answer["why"].push_back(caution);
+  }
   Broken broken = invariants(scene, done.report, done.results);
   if (done.report.status != RunStatus::failed) {
     check_form(scene, expected.at("form").get<std::string>(), done.report, done.results, broken);

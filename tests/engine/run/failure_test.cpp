@@ -52,6 +52,39 @@ TEST(Failure, AFixedStepFarTooLargeDiverges) {
   expect_clean(r.results);
 }
 
+/// A plate driven into saturated soil that fills a box from wall to wall; its water cannot be compressed.
+TEST(Failure, WaterWithoutRoomIsNamed) {
+  Scene s = plane(0.4, 0.6, 0.1, 0.1);
+  add_body(s, "bed", BodyKind::saturated_soil, {0, 0, 0}, {0.4, 0.4, 0});
+  s.water.bulk_modulus.reset();
+  Load plate;
+  plate.name = "plate", plate.kind = Load::Kind::plate, plate.body = "bed";
+  plate.plate = {{0, 0.4, 0}, {0.4, 0.4, 0}};
+  plate.plate_velocity = {0, -0.1, 0};
+  s.loads = {plate};
+  s.output.frame_interval = s.output.series_interval = 0.05;
+  const auto r = test::record(s);
+  ASSERT_EQ(r.report.status, RunStatus::failed);
+  EXPECT_EQ(r.report.failure.code, "diverged");
+  EXPECT_TRUE(says(r.report.failure.message, "water without room")) << r.report.failure.message;
+  EXPECT_TRUE(says(r.report.failure.message, "bulk_modulus")) << r.report.failure.message;
+  expect_clean(r.results);
+}
+
+/// A column of water that falls apart with its feedback switched off ends with a caution; at rest with none.
+TEST(Failure, WaterThatLostRoomIsToldWithTheAnswer) {
+  Scene s = plane(0.8, 0.6, 0.1, 2);
+  add_body(s, "column", BodyKind::water, {0, 0, 0}, {0.2, 0.5, 0});
+  s.numerics.drift_time = 0;
+  s.output.frame_interval = 2, s.output.series_interval = 0.05;
+  const auto r = test::record(s);
+  ASSERT_EQ(r.report.status, RunStatus::succeeded);
+  ASSERT_EQ(r.report.cautions.size(), 1u);
+  EXPECT_TRUE(says(r.report.cautions.front(), "numerics.drift_time of 0 s")) << r.report.cautions.front();
+  s.bodies[0].region.max = {0.8, 0.4, 0};
+  EXPECT_TRUE(test::record(s).report.cautions.empty());
+}
+
 TEST(Failure, TooManySteps) {
   Scene s = bank(1);
   s.numerics.max_steps = 12;

@@ -46,6 +46,15 @@ TEST(Check, WhatItsOwnWeightWouldCrushIsRefused) {
             Pointers{});
 }
 
+TEST(Check, HatsNeedTwoPointsInSoil) {
+  const auto with = [](Kernel kernel, int points) {
+    return after([=](Scene& s) { s.numerics.kernel = kernel, s.numerics.points_per_cell = points; });
+  };
+  EXPECT_EQ(with(Kernel::linear, 1), Pointers{"/numerics/points_per_cell"});
+  EXPECT_EQ(with(Kernel::linear, 2), Pointers{});
+  EXPECT_EQ(with(Kernel::quadratic, 1), Pointers{});
+}
+
 TEST(Check, EmptyAndOversizedGrids) {
   EXPECT_EQ(after([](Scene& s) { s.domain.cell_size = 0; }), Pointers{"/domain/cell_size"});
   EXPECT_EQ(after([](Scene& s) { s.domain.max[0] = 0; }), Pointers{"/domain/max"});
