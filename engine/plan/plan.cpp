@@ -152,7 +152,8 @@ Memory measure(const Scene& scene, Plan& plan) {
                                  D * (sizeof(FaceSums) + sizeof(FaceImage) + flow + sizeof(FaceSpeeds)) +
                                  sizeof(CellSums) + sizeof(CellState) + 3 * sizeof(double);
   const double kept_per_active_cell =  // of the last good state
-      follower + D * (flow + sizeof(FaceSpeeds) + 1) + sizeof(CellSums) + sizeof(CellState) + 2 * sizeof(double);
+      follower + D * (flow + sizeof(FaceSpeeds) + 1) + sizeof(CellSums) + sizeof(CellState) +
+      2 * sizeof(double);
   // Flags of walls, for water and for grains, and volumes about an axis.
   const double per_cell = 2 * (5 * D + 1 + sizeof(int)) + (grid.axial ? (D + 1) * sizeof(double) : 0);
   const double points_bytes = per_soil * static_cast<double>(plan.soil_points + plan.fixed_soil_points) +

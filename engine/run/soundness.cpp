@@ -46,6 +46,20 @@ double load_pressure(const Scene& scene) {
   return pressure;
 }
 
+/// N, of all loads with nothing taken off for what pushes against another.
+template <int D>
+double load_force(const State<D>& s) {
+  double force = 0;
+  for (const SurfaceLoad<D>& load : s.loads) {
+    double area = 0, traction2 = 0;
+    for (const LoadMarker<D>& marker : load.markers) area += marker.area;
+    for (const double t : load.traction) traction2 += t * t;
+    force += std::sqrt(traction2) * area;
+  }
+  for (const Plate<D>& plate : s.plates) force += plate.driven ? 0 : std::abs(plate.force);
+  return force;
+}
+
 double fastest_plate(const Scene& scene) {
   double speed = 0;
   for (const Load& load : scene.loads) speed = std::max(speed, size(load.plate_velocity));
@@ -87,6 +101,7 @@ Soundness<D>::Soundness(const Scene& scene, const State<D>& start, const StepRep
   given_energy_ = std::abs(scene.initial.uniform_pressure) * volume + confined * solid;
   energy_at_start_ = motion.kinetic + strain_energy(start);
   moving_mass_ = motion.moving_mass;
+  force_ = load_force(start);
   fastest_ = std::max(motion.max_speed, fastest_plate(scene));
 }
 
