@@ -74,7 +74,7 @@ template <int D>
 void unfold_plates(State<D>& s);
 /// Velocities after the pressure gradient; extrapolated a little way into the air → `flow`.
 template <int D>
-void correct_velocities(State<D>& s, double dt);
+void correct_velocities(State<D>& s);
 /// Impulses (N·s) that supports give to the points in this step: walls and fixed grains, with the water's
 /// pressure on them; the water surface to the drops that it carries; and damping. Summed from forces, not
 /// from the change of momentum, so that the ledger's balance is a check.

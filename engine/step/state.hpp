@@ -70,9 +70,10 @@ struct FaceFlow {
   double soaked = 0;
   int soaked_by = 0;
 
-  double drag = 0;                             ///< N·s/m⁴ per cell volume, between the phases
+  /// N·s/m³, impulse of the drag on the grains in this step, and how it answers to G. Worked out with the
+  /// velocities: from their difference, what a drag of 10¹⁵ N·s/m⁴ does could not be told.
+  double exchange = 0, exchange_response = 0;
   double fixed_drag = 0;                       ///< N·s/m⁴ on the water, of grains that do not move
-  double exchange = 0;                         ///< N·s/m³, impulse of the drag on the grains in this step
   double viscous = 0;                          ///< N/kg, force of the viscosity on the water
   double soil_inertia = 1, water_inertia = 1;  ///< –, what damping multiplies inertia by in this step
 

@@ -74,7 +74,7 @@ double solve_velocities(State<D>& s, double dt, PressureReport& report, Stopwatc
     report = solve_pressure(s, dt);  // mass balance of the mixture
     clock.lap(Phase::pressure);
     settle_plates(s, dt);
-    correct_velocities(s, dt);  // velocities that keep it
+    correct_velocities(s);  // velocities that keep it
     const bool fits = !travels_too_far(s, dt);
     clock.lap(Phase::velocities);
     if (fits) return dt;

@@ -41,7 +41,9 @@ struct Balance {
 };
 
 /// All of a face while it is worked out.
-struct FaceTrial : FaceFlow, FaceSpeeds {};
+struct FaceTrial : FaceFlow, FaceSpeeds {
+  double slip = 0, slip_response = 0;  ///< of the water past the grains, as the velocities
+};
 
 /// Implicit drag: [FMS19] eqs. (1) and (2) as one 2×2 system, solved for v̂ and for the response to G.
 /// The water's inertia is that of a full face, but its points carry only the mass that is there, a few per
@@ -49,19 +51,23 @@ struct FaceTrial : FaceFlow, FaceSpeeds {};
 void solve_pair(const Balance& b, double dt, FaceTrial& f) {
   const double a11 = b.soil_mass + b.drag, a12 = -b.drag;
   const double a22 = b.water_mass + b.water_drag + b.fixed_drag, a21 = -b.water_drag;
-  const double det = a11 * a22 - a12 * a21;
+  // a11 a22 − a12 a21 without its products of two drags, which cancel: at 10⁻¹⁴ m/s nothing else would be
+  // left.
+  const double free = b.water_mass + b.fixed_drag, det = b.soil_mass * a22 + b.drag * free;
   f.soil = (a22 * b.soil_momentum - a12 * b.water_momentum) / det;
   f.water = (a11 * b.water_momentum - a21 * b.soil_momentum) / det;
   f.soil_response = dt * (a22 * f.pushed - a12 * f.n) / det;
   f.water_response = dt * (a11 * f.n - a21 * f.pushed) / det;
+  f.slip = (b.soil_mass * b.water_momentum - free * b.soil_momentum) / det;
+  f.slip_response = dt * (b.soil_mass * f.n - free * f.pushed) / det;
 }
 
 /// Water past grains that are held.
 void solve_water(const Balance& b, double dt, FaceTrial& f) {
   const double a = b.water_mass + b.water_drag + b.fixed_drag;
   f.soil = f.soil_response = 0;
-  f.water = b.water_momentum / a;
-  f.water_response = dt * f.n / a;
+  f.water = f.slip = b.water_momentum / a;
+  f.water_response = f.slip_response = dt * f.n / a;
 }
 
 void solve_soil(const Balance& b, double dt, FaceTrial& f) {
@@ -216,10 +222,10 @@ FaceTrial predicted(State<D>& s, int d, int face, double dt) {
     b.water_mass = inertia * there * full;
     f.viscous = water && s.constants.viscosity > 0 ? viscous_acceleration(s, d, face) : 0;
     b.water_momentum = b.water_mass * (f.water_old + dt * (fall + f.viscous / inertia));
-    b.drag = dt * there * f.n * f.n * sums.resistivity / (part * volume);
-    f.drag = b.drag / dt * part;
+    if (soil) b.drag = dt * there * f.n * f.n * sums.resistivity / (part * volume);
     const double share = wet ? sums.water_mass / (part * volume * full) : 1;
     b.water_drag = b.drag / std::max(share, kLeastWetPart);
+    b.drag = share * b.water_drag;  // less on the grains, too, where next to no water is
     f.fixed_drag = f.n * f.n * fixed_resistivity;
     b.fixed_drag = dt * there * f.fixed_drag;
   }
@@ -240,6 +246,8 @@ FaceTrial predicted(State<D>& s, int d, int face, double dt) {
     damp(s, d, face, dt, moving_soil, b, f);
   }
   solve(b, dt, moving_soil, f);
+  f.exchange = b.drag * part * f.slip;
+  f.exchange_response = b.drag * part * f.slip_response;
   if (!water_open) f.water = f.water_response = 0;
   return f;
 }
@@ -315,7 +323,7 @@ void predict_velocities(State<D>& s, double dt) {
 }
 
 template <int D>
-void correct_velocities(State<D>& s, double dt) {
+void correct_velocities(State<D>& s) {
   with_phases(s, [&](auto phases) {
     using P = decltype(phases);
     s.blocks.all([&](int b) {
@@ -328,7 +336,7 @@ void correct_velocities(State<D>& s, double dt) {
             if (f.wet || f.soaked > 0) v.water -= f.water_response * g;
             if constexpr (P::soil) {
               v.soil -= f.soil_response * g;
-              f.exchange = dt * f.drag * (v.water - v.soil);
+              f.exchange -= f.exchange_response * g;
             }
           }
           if (P::soil && s.soil_walls.closed(d, face) && v.soil * leaving_direction(s, d, face) <= 0)
@@ -363,7 +371,7 @@ template double pressure_gradient<2>(const State<2>&, const Field<double>&, int,
 template double pressure_gradient<3>(const State<3>&, const Field<double>&, int, int);
 template void predict_velocities<2>(State<2>&, double);
 template void predict_velocities<3>(State<3>&, double);
-template void correct_velocities<2>(State<2>&, double);
-template void correct_velocities<3>(State<3>&, double);
+template void correct_velocities<2>(State<2>&);
+template void correct_velocities<3>(State<3>&);
 
 }  // namespace quicksand

@@ -22,10 +22,10 @@ double diagonal(const Scene& s) {
   return std::sqrt(sum);
 }
 
-/// What no impulse accounts for, of what drove the motion. Loose: rounding of the drag at 1e-14 m/s and a
-/// pressure solved to 1e-3 leave up to a thousandth. Not beside reservoirs, whose push counts as no drive.
+/// What no impulse accounts for, of what drove the motion: rounding leaves up to 1e-5 at drags of 1e-14 m/s.
+/// Not beside reservoirs, whose push counts as no drive.
 void check_momentum(const Scene& s, const Ledger& l, Broken& broken) {
-  constexpr double kAgree = 0.01;
+  constexpr double kAgree = 1e-4;
   if (s.reservoirs.empty() && l.momentum_residual > kAgree)
     broken.push_back("momentum off by " + figure(l.momentum_residual) + " of what drove it");
 }

@@ -69,10 +69,10 @@ TEST(Field, TakesMemoryWhereItIsTouched) {
   constexpr std::size_t kMany = 200'000'000;
   const double before = resident();
   Field<FaceFlow> field(kMany);  // 22 GB
-  field[0].phi = 1, field[kMany / 2].drag = 2, field[kMany - 1].n = 3;
+  field[0].phi = 1, field[kMany / 2].exchange_response = 2, field[kMany - 1].n = 3;
   EXPECT_LT(resident() - before, 1e6);
-  EXPECT_EQ(field[kMany / 2].drag, 2);
-  EXPECT_EQ(field[kMany / 3].drag, 0);
+  EXPECT_EQ(field[kMany / 2].exchange_response, 2);
+  EXPECT_EQ(field[kMany / 3].exchange_response, 0);
   EXPECT_EQ(field[kMany / 3].wet, 0);
 }
 

@@ -83,7 +83,7 @@ TEST(ExplicitPressure, ChangesByTheDivergenceOfTheFlux) {
   s.pressure_old = s.pressure;
   predict_velocities(s, dt);
   solve_pressure(s, dt);
-  correct_velocities(s, dt);
+  correct_velocities(s);
   double largest_rate = 0, worst = 0;
   for (const int i : s.pressure_system.cell) {
     double divergence = 0;
