@@ -158,9 +158,11 @@ Memory measure(const Scene& scene, Plan& plan) {
   const double per_cell = 2 * (5 * D + 1 + sizeof(int)) + (grid.axial ? (D + 1) * sizeof(double) : 0);
   const double points_bytes = per_soil * static_cast<double>(plan.soil_points + plan.fixed_soil_points) +
                               per_water * static_cast<double>(plan.water_points);
+  const double per_wet_cell = PressureSystem<D>::kBytesPerRow + Multigrid<D>::bytes_per_row();
+  const double wet_cells = static_cast<double>(plan.water_points) / power(scene.numerics.points_per_cell, D);
   const auto active = static_cast<double>(points.active_cells);
   const auto count = static_cast<double>(plan.soil_points + plan.fixed_soil_points + plan.water_points);
-  return {points_bytes + per_active_cell * active + per_cell * grid.count(),
+  return {points_bytes + per_active_cell * active + per_wet_cell * wet_cells + per_cell * grid.count(),
           points_bytes + kept_per_active_cell * active, count * frame_bytes_per_point(scene, kStress<D>)};
 }
 
@@ -210,9 +212,9 @@ Plan make_plan(const Scene& scene, const Calibration& machine) {
   Plan plan;
   plan.dimensions = scene.domain.dimension == Dimension::space ? 3 : 2;
   plan.cell_size = scene.cell_size();
+  plan.has_water = has_water(scene);
   const Memory memory = plan.dimensions == 2 ? measure<2>(scene, plan) : measure<3>(scene, plan);
   plan.has_soil = plan.soil_points > 0;
-  plan.has_water = has_water(scene);
   plan.has_viscosity = plan.has_water && scene.water.viscosity > 0;
   explain(scene, plan);
   plan.stages = plan_stages(scene);

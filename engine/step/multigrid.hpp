@@ -26,8 +26,12 @@ class Multigrid {
   /// y = A x of the finest level.
   void multiply(const std::vector<double>& x, std::vector<double>& y) const;
   std::size_t levels() const { return levels_.size(); }
-  /// What the levels take, bytes.
+  /// What the levels take, bytes; and about as much of a wet cell before there are any.
   double bytes() const;
+  static constexpr double bytes_per_row() {
+    const double row = sizeof(int) + sizeof(Row) + sizeof(Cell<D>) + 2 * sizeof(int) + 2 * sizeof(double);
+    return row * kChildren / (kChildren - 1) + kChildren * sizeof(int) / (kChildren - 1.0);
+  }
 
  private:
   static constexpr int kSides = 2 * D, kChildren = 1 << D;

@@ -27,6 +27,8 @@ struct PressureSystem {
     std::vector<double> x, residual, preconditioned, direction, image;
   };
   Work work;
+
+  static constexpr double kBytesPerRow = (9 + D) * sizeof(double) + (1 + 2 * D) * sizeof(int);
 };
 
 }  // namespace quicksand

@@ -76,5 +76,18 @@ TEST(Field, TakesMemoryWhereItIsTouched) {
   EXPECT_EQ(field[kMany / 3].wet, 0);
 }
 
+TEST(LargeArrays, AreGivenBack) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "sanitizers keep memory that was freed";
+#endif
+  std::vector<char>(30'000'000, 1).clear();
+  std::vector<std::vector<char>> large, small;
+  const double before = resident();
+  for (int i = 0; i < 60; ++i) large.emplace_back(3'000'000, 1), small.emplace_back(50'000, 1);
+  EXPECT_GT(resident() - before, 170e6);
+  large.clear();
+  EXPECT_LT(resident() - before, 20e6);
+}
+
 }  // namespace
 }  // namespace quicksand
