@@ -1,6 +1,8 @@
 #pragma once
 // The phases of one time step, in their order. Each reads what the ones before it wrote.
 
+#include <cmath>
+
 #include "engine/step/pressure.hpp"
 #include "engine/step/state.hpp"
 
@@ -72,9 +74,12 @@ void move_plates(State<D>& s, double dt);
 /// Velocities behind plates, for the points whose kernels reach there → `flow`.
 template <int D>
 void unfold_plates(State<D>& s);
-/// Velocities after the pressure gradient; extrapolated a little way into the air → `flow`.
+/// Velocities after the pressure gradient; those of the water go on into the air → `speeds`, `flow`.
 template <int D>
 void correct_velocities(State<D>& s);
+/// Velocities of the water at the faces next to its surface, extrapolated → `speeds`.
+template <int D>
+void extend_water(State<D>& s);
 /// Impulses (N·s) that supports give to the points in this step: walls and fixed grains, with the water's
 /// pressure on them; the water surface to the drops that it carries; and damping. Summed from forces, not
 /// from the change of momentum, so that the ledger's balance is a check.
@@ -165,6 +170,14 @@ double gradient_on_grains(const State<D>& s, int d, int face) {
 /// Acceleration of the water by its viscosity at a face that carries water, m/s².
 template <int D>
 double viscous_acceleration(const State<D>& s, int d, int face);
+
+/// m/s, of a wave as long as a cell.
+template <int D>
+double cell_wave(const State<D>& s) {
+  double g2 = 0;
+  for (int d = 0; d < D; ++d) g2 += s.constants.fall(d) * s.constants.fall(d);
+  return std::sqrt(std::sqrt(g2) * s.grid.h);
+}
 
 /// Least room for water, –: the smallest porosity a case may ask for. Below it grains have been pushed
 /// into each other, and the flux of water through them would lose its meaning.

@@ -38,9 +38,7 @@ template <int D>
 double drift_pace(const State<D>& s, int cell) {
   const double inverse_h = s.grid.inverse_h, passes = speed_in(s, cell) * inverse_h;
   if (s.cell_sums[cell].grains > 0) return passes / kDriftCells;
-  double g2 = 0;
-  for (int d = 0; d < D; ++d) g2 += s.constants.fall(d) * s.constants.fall(d);
-  return std::max(passes, std::sqrt(std::sqrt(g2) * inverse_h));
+  return std::max(passes, cell_wave(s) * inverse_h);
 }
 
 /// 1/s
