@@ -113,6 +113,7 @@ QUICKSAND_INLINE BatchLanes inverse_root(const BatchLanes& v) {
   return 1.0 / square_root(v);
 #endif
 }
+/// v to a power, lane by lane.
 template <class T>
 QUICKSAND_INLINE T power(const T& v, double exponent) {
   if constexpr (std::is_same_v<T, double>) {

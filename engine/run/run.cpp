@@ -248,11 +248,11 @@ class Run {
     outputs_.finish();
     ledger_.measure(state_, last_);
     report_.ledger = ledger_.ledger();
-    report_.cautions = soundness_->cautions(report_.ledger);
+    const bool suspended = report_.status == RunStatus::suspended;
+    if (!suspended) report_.cautions = soundness_->cautions(report_.ledger);
     for (const std::string& caution : report_.cautions) monitor_.log(caution);
     report_.heave = watch_.heave();
     report_.quasi_static = inertia_.reports();
-    const bool suspended = report_.status == RunStatus::suspended;
     report_.frames = suspended ? good_.checkpoint().frames : outputs_.frames();
     report_.sim_time = state_.time;
     report_.wall_seconds = wall_before_ + seconds_since(start_);

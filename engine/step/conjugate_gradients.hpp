@@ -15,8 +15,9 @@ struct PressureReport {
 template <int D>
 void multiply(const PressureSystem<D>& m, const std::vector<double>& x, std::vector<double>& y);
 
-/// Conjugate gradients on `m` from `m.solution`, preconditioned by one cycle of `multigrid`, until the
-/// largest residual is below `tolerance` × the largest right-hand side or what rounding leaves.
+/// Conjugate gradients on `m` from `m.solution`, first along `m.change` unless that is empty, then
+/// preconditioned by one cycle of `multigrid`, until the largest residual is below `tolerance` × the largest
+/// right-hand side or what rounding leaves.
 template <int D>
 PressureReport conjugate_gradients(const Grid<D>& grid, PressureSystem<D>& m, Multigrid<D>& multigrid,
                                    double tolerance);
