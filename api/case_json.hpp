@@ -7,6 +7,7 @@
 #include "engine/run/run.hpp"
 #include "engine/scene/scene.hpp"
 #include "engine/study/error_estimate.hpp"
+#include "engine/study/trial.hpp"
 
 namespace quicksand {
 
@@ -27,8 +28,10 @@ std::string resolved_case(const Scene& scene);
 
 std::string plan_json(const Plan& plan);
 /// The plan of a valid case and, in `presets`, what each preset would cost or why it does not fit. What the
-/// case says under `numerics` wins over a preset there too.
-std::string estimate_json(const std::string& case_text, const Plan& plan, const Calibration& machine);
+/// case says under `numerics` wins over a preset there too. Their steps and seconds follow the trial, if
+/// there is one.
+std::string estimate_json(const std::string& case_text, const Plan& plan, const Calibration& machine,
+                          const std::optional<Trial>& trial = {});
 /// `run.json`: status, failure, plan, ledger, headline figures, their error if it was estimated, cost.
 std::string report_json(const Scene& scene, const Plan& plan, const RunReport& report,
                         const std::optional<ErrorEstimateReport>& error_estimate = {});

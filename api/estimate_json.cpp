@@ -9,11 +9,13 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json cost_json(const char* name, const std::string& case_text, Preset preset, const Calibration& machine) {
+Json cost_json(const char* name, const std::string& case_text, Preset preset, const Calibration& machine,
+               const std::optional<Trial>& trial) {
   const ParsedCase parsed = parse_case(case_text, preset, machine);
   if (!parsed.scene)
     return {{"preset", name}, {"fault", parsed.faults.front().pointer + ": " + parsed.faults.front().detail}};
-  const Plan plan = make_plan(*parsed.scene, machine);
+  Plan plan = make_plan(*parsed.scene, machine);
+  if (trial) foretell(*trial, *parsed.scene, machine, plan);
   return {{"preset", name},
           {"fault", nullptr},
           {"cell_size", plan.cell_size},
@@ -28,12 +30,13 @@ Json cost_json(const char* name, const std::string& case_text, Preset preset, co
 
 }  // namespace
 
-std::string estimate_json(const std::string& case_text, const Plan& plan, const Calibration& machine) {
+std::string estimate_json(const std::string& case_text, const Plan& plan, const Calibration& machine,
+                          const std::optional<Trial>& trial) {
   Json json = Json::parse(plan_json(plan));
   json["presets"] = Json::array();
   for (const auto& [preset, name] :
        {std::pair{Preset::draft, "draft"}, {Preset::standard, "standard"}, {Preset::fine, "fine"}})
-    json["presets"].push_back(cost_json(name, case_text, preset, machine));
+    json["presets"].push_back(cost_json(name, case_text, preset, machine, trial));
   return json.dump(2) + "\n";
 }
 

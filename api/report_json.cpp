@@ -22,6 +22,14 @@ Json stages_json(const std::vector<StagePlan>& stages) {
   return list;
 }
 
+Json to_json(const std::optional<TrialFigures>& trial) {
+  if (!trial) return nullptr;
+  return {{"cell_size", trial->cell_size},
+          {"steps", trial->steps},
+          {"seconds", trial->seconds},
+          {"fraction", trial->fraction}};
+}
+
 Json to_json(const Plan& p) {
   return {{"dimensions", p.dimensions},
           {"cells", p.cells},
@@ -41,6 +49,7 @@ Json to_json(const Plan& p) {
           {"end_time", p.end_time},
           {"steps", p.steps},
           {"seconds", p.seconds},
+          {"trial", to_json(p.trial)},
           {"error_class", word_of(p.kind)},
           {"expected_error", p.expected_error}};
 }

@@ -110,7 +110,7 @@ int schema_command() {
   return exit_status::ok;
 }
 
-int check_command(const std::string& case_file, const std::optional<Preset>& preset) {
+int check_command(const std::string& case_file, const std::optional<Preset>& preset, double trial_seconds) {
   const auto text = read_case_file(case_file);
   if (!text) return exit_status::bad_input;
   const Calibration machine = read_calibration(user_calibration());
@@ -119,7 +119,13 @@ int check_command(const std::string& case_file, const std::optional<Preset>& pre
     print_faults(case_file, parsed.faults);
     return exit_status::bad_input;
   }
-  std::cout << estimate_json(*text, make_plan(*parsed.scene, machine), machine) << '\n';
+  Plan plan = make_plan(*parsed.scene, machine);
+  std::optional<Trial> trial;
+  if (trial_seconds > 0) {
+    trial = make_trial(*parsed.scene, machine, trial_seconds);
+    foretell(*trial, *parsed.scene, machine, plan);
+  }
+  std::cout << estimate_json(*text, plan, machine, trial) << '\n';
   return exit_status::ok;
 }
 

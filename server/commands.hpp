@@ -28,7 +28,8 @@ struct RunCommand {
 };
 int run_command(const RunCommand& command);
 
-int check_command(const std::string& case_file, const std::optional<Preset>& preset);
+/// `trial_seconds`: see make_trial; 0: none.
+int check_command(const std::string& case_file, const std::optional<Preset>& preset, double trial_seconds);
 
 struct TradeoffCommand {
   std::string case_file, out, reference;

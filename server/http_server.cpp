@@ -104,7 +104,7 @@ void HttpServer::install_limits() {
   http_.set_keep_alive_max_count(1);  // an idle client must not hold a thread
   const Settings& s = service_.settings;
   const auto threads = static_cast<std::size_t>(connection_threads + s.max_waiters + s.max_streams +
-                                                s.max_readers + s.max_downloads);
+                                                s.max_readers + s.max_downloads + s.max_trials);
   http_.new_task_queue = [threads] { return new httplib::ThreadPool(threads); };
   http_.set_read_timeout(read_timeout_s);
   http_.set_write_timeout(write_timeout_s);

@@ -22,6 +22,7 @@ struct CommandLine {
   SubmitCommand submit;
   ServeCommand serve;
   std::optional<Preset> check_preset;
+  double trial_seconds = 1;
   std::string id, out, url = "http://127.0.0.1:8080";
   std::string key_state, key_name, key_role = "submit", key_id;
   int status = 0;
@@ -58,7 +59,13 @@ void add_local_commands(CLI::App& app, CommandLine& line) {
   CLI::App* check = app.add_subcommand("check", "print what a case would compute, or its faults");
   check->add_option("CASE", line.check_case, "case file (JSON)")->required();
   add_preset(check, line.check_preset);
-  check->callback([&line] { line.status = check_command(line.check_case, line.check_preset); });
+  check
+      ->add_option("--trial", line.trial_seconds,
+                   "s for a run on larger cells, by which steps and seconds are foretold; 0: none")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 3600.0));
+  check->callback(
+      [&line] { line.status = check_command(line.check_case, line.check_preset, line.trial_seconds); });
 
   CLI::App* tradeoff = app.add_subcommand("tradeoff", "error and cost of a case under other settings");
   tradeoff->add_option("CASE", line.tradeoff.case_file, "case file (JSON)")->required();

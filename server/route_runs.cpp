@@ -17,6 +17,7 @@ constexpr std::size_t max_label_bytes = 128;
 constexpr std::size_t max_key_bytes = 255;
 constexpr int default_page = 50;
 constexpr int max_priority = 10;
+constexpr int max_trial_s = 5;
 constexpr int full_retry_s = 60;  ///< s, `Retry-After` of a full queue
 
 constexpr int default_budget_s = 600, max_budget_s = 1'000'000;  ///< s of CPU time of a tradeoff
@@ -175,8 +176,22 @@ void post_run(Service& service, const Call& call, httplib::Response& response) {
 }
 
 void post_validate(Service& service, const Call& call, httplib::Response& response) {
-  const PlannedCase planned = plan_case(service.settings, service.machine, call.request.body);
-  response.set_content(estimate_json(call.request.body, planned.plan, service.machine), "application/json");
+  const int seconds = checked_number<int>(call, "trial", 0, max_trial_s, 0);
+  PlannedCase planned = plan_case(service.settings, service.machine, call.request.body);
+  std::optional<Trial> trial;
+  if (seconds > 0) {
+    const auto place = service.trials.take();
+    if (!place)
+      throw ProblemError{{503,
+                          "too many trials: " + named_limit(service.settings, &Settings::max_trials),
+                          {},
+                          {},
+                          max_trial_s}};
+    trial = make_trial(planned.scene, service.machine, seconds);
+    foretell(*trial, planned.scene, service.machine, planned.plan);
+  }
+  response.set_content(estimate_json(call.request.body, planned.plan, service.machine, trial),
+                       "application/json");
 }
 
 void get_runs(Service& service, const Call& call, httplib::Response& response) {

@@ -33,7 +33,7 @@ const std::vector<Route>& route_table() {
       {"GET", "/v1/runs/{id}/frames/{k}", get_frame, Access::known, {"fields", "stride"}},
       {"GET", "/v1/runs/{id}/results", get_results, Access::known, {}},
       {"GET", "/v1/runs/{id}/results/{file}", get_result_file, Access::known, {}},
-      {"POST", "/v1/validate", post_validate, Access::known, {}, true},
+      {"POST", "/v1/validate", post_validate, Access::known, {"trial"}, true},
       {"GET", "/v1/cases", get_cases, Access::known, {}},
       {"GET", "/v1/cases/{name}", get_case, Access::known, {}},
       {"GET", "/v1/schemas/case", get_case_schema, Access::known, {}},

@@ -35,7 +35,7 @@ struct Service {
   Calibration machine;
   Milliseconds started = utc_now();
   Places waiters{settings.max_waiters}, streams{settings.max_streams}, readers{settings.max_readers},
-      downloads{settings.max_downloads};
+      downloads{settings.max_downloads}, trials{settings.max_trials};
   std::atomic<bool> stopping{false};
 };
 

@@ -46,6 +46,7 @@ struct Settings {
   Count max_streams = 16;
   Count max_readers = 4;
   Count max_downloads = 32;
+  Count max_trials = 1;
   Count max_data_bytes = 16 << 20;
 };
 

@@ -89,6 +89,8 @@ const std::vector<Setting>& settings_table() {
        "max_data_bytes of memory until its client has read it."},
       {Kind::count, "max_downloads", &Settings::max_downloads, 0, 256,
        "Result files and logs that are sent at a time; the next one gets 503."},
+      {Kind::count, "max_trials", &Settings::max_trials, 0, 16,
+       "Trial runs for /v1/validate at a time, a core for seconds each; the next one gets 503."},
       {Kind::bytes, "max_data_bytes", &Settings::max_data_bytes, 1 << 10, 1 << 30,
        "Most data in one answer with a frame or series; what would be larger gets 400."},
   };

@@ -23,12 +23,6 @@ namespace {
 /// frame with its compression.
 constexpr double kStartSeconds = 0.045, kFrameSeconds = 2.4e-3, kFramePointSeconds = 1.2e-6;
 
-double output_seconds(const Scene& scene, const Plan& plan) {
-  const double frames = 2 + plan.end_time / scene.output.frame_interval;
-  const auto points = static_cast<double>(plan.soil_points + plan.fixed_soil_points + plan.water_points);
-  return kStartSeconds + frames * (kFrameSeconds + points * kFramePointSeconds);
-}
-
 /// Steps that end on every sample and frame (Run::until_event): as many as the longer of the two intervals'
 /// parts needs.
 double steps_between_events(const Scene& scene, double duration, double dt) {
@@ -208,6 +202,12 @@ void add_companions(const Scene& scene, const Calibration& machine, Plan& plan) 
 
 }  // namespace
 
+double output_seconds(const Scene& scene, const Plan& plan, double end_time) {
+  const double frames = 2 + end_time / scene.output.frame_interval;
+  const auto points = static_cast<double>(plan.soil_points + plan.fixed_soil_points + plan.water_points);
+  return kStartSeconds + frames * (kFrameSeconds + points * kFramePointSeconds);
+}
+
 Plan make_plan(const Scene& scene, const Calibration& machine) {
   Plan plan;
   plan.dimensions = scene.domain.dimension == Dimension::space ? 3 : 2;
@@ -240,7 +240,7 @@ Plan make_plan(const Scene& scene, const Calibration& machine) {
   plan.memory_bytes = memory.with_frames(frames_held(scene, plan.time_step));
   plan.seconds =
       machine.seconds(scene, plan.steps, static_cast<double>(plan.soil_points + plan.water_points));
-  plan.seconds += output_seconds(scene, plan);
+  plan.seconds += output_seconds(scene, plan, plan.end_time);
   add_companions(scene, machine, plan);
   plan.kind = error_class(scene);
   plan.expected_error = expected_error(scene);

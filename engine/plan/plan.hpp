@@ -2,6 +2,7 @@
 // What a run will model, allocate and cost.
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,14 @@ namespace quicksand {
 struct StepBound {
   std::string name;
   double seconds = 0;
+};
+
+/// A short run of the same scene on larger cells, by which steps and seconds were foretold (study/trial.hpp).
+struct TrialFigures {
+  double cell_size = 0;  ///< m
+  long steps = 0;
+  double seconds = 0;   ///< of processor time that it took
+  double fraction = 1;  ///< of the simulated time that it came through
 };
 
 struct Plan {
@@ -33,9 +42,13 @@ struct Plan {
   double end_time = 0;  ///< s, sum of the stages' (longest) durations
   double steps = 0;
   double seconds = 0;  ///< estimated wall time on one core of this machine
+  std::optional<TrialFigures> trial;
   ErrorClass kind = ErrorClass::smooth;
   double expected_error = 0;  ///< –, see expected_error.hpp
 };
+
+/// Estimated seconds of a run that ends at `end_time` (s) besides its steps: its file and frames.
+double output_seconds(const Scene& scene, const Plan& plan, double end_time);
 
 /// Requires `check(scene)` to be empty.
 Plan make_plan(const Scene& scene, const Calibration& machine = {});

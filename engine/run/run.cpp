@@ -73,6 +73,7 @@ class Run {
       if (monitor_.suspended()) return suspend();
       if (count_.steps() >= scene_.numerics.max_steps) return fail(too_many_steps(scene_, state_.time));
       const StepSituation now = situation();
+      monitor_.situation(stage_, state_.time, now);
       const StepBound bound = choose_step(scene_, now);
       if (const auto wave = outrun_wave(scene_, now, easing_.shortened(bound).seconds))
         return fail(unstable_step(scene_, state_, *wave));

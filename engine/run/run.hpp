@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "engine/plan/plan.hpp"
+#include "engine/plan/step_bounds.hpp"
 #include "engine/scene/scene.hpp"
 
 namespace quicksand {
@@ -87,6 +88,8 @@ class RunMonitor {
   virtual ~RunMonitor() = default;
   virtual void progress(const Progress&) {}
   virtual void log(const std::string& /*line*/) {}
+  /// What the next step, of that stage and from that time (s), is chosen by.
+  virtual void situation(std::size_t /*stage*/, double /*time*/, const StepSituation&) {}
   virtual bool cancelled() { return false; }
   /// Asks for a checkpoint and the run's end (RunStatus::suspended).
   virtual bool suspended() { return false; }

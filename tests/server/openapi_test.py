@@ -114,7 +114,10 @@ class DocumentedIsServedTest(DocumentTest):
         self.assertEqual(documented - self.seen, set())
 
     def ask_what_goes_well(self, case, run):
-        self.ask("post", "/v1/validate", 200, case)
+        self.assertIsNone(self.ask("post", "/v1/validate", 200, case).json()["trial"])
+        tried = self.ask("post", "/v1/validate", 200, case, "?trial=1").json()
+        self.assertGreater(tried["trial"]["cell_size"], tried["cell_size"])
+        self.ask("post", "/v1/validate", 400, case, "?trial=6")
         self.ask("get", "/v1/runs", 200, query="?status=succeeded&limit=1")
         tag = self.ask("get", "/v1/runs/{id}", 200, id=run).headers["ETag"]
         self.ask("get", "/v1/runs/{id}", 304, headers={"If-None-Match": tag}, id=run)
@@ -216,10 +219,11 @@ class DocumentedIsServedTest(DocumentTest):
 
     def ask_a_server_without_room(self, run):
         self.server.stop()
-        self.server.options = ["--set", "max_readers=0", "--set", "max_downloads=0"]
+        self.server.options = ["--set", "max_readers=0", "--set", "max_downloads=0", "--set", "max_trials=0"]
         self.server.start()
         self.ask("get", "/v1/runs/{id}/frames/{k}", 503, id=run, k=0)
         self.ask("get", "/v1/runs/{id}/series", 503, id=run)
+        self.ask("post", "/v1/validate", 503, small_case(), "?trial=1")
         self.ask("get", "/v1/runs/{id}/log", 503, id=run)
         self.ask("get", "/v1/runs/{id}/results/{file}", 503, id=run, file="run.json")
 

@@ -1,0 +1,117 @@
+#include "engine/study/trial.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "engine/study/calibrate.hpp"
+#include "tests/engine/small_scene.hpp"
+#include "tests/verification/recorder.hpp"
+
+namespace quicksand {
+namespace {
+
+using test::add_body;
+
+/// A column of water that falls apart: at rest at first, so that nothing but events bounds a plan's step.
+Scene collapse() {
+  Scene s = test::plane(1, 0.6, 0.02, 0.3);
+  add_body(s, "column", BodyKind::water, {0, 0, 0}, {0.2, 0.4, 0});
+  s.output.frame_interval = s.output.series_interval = 0.15;
+  return s;
+}
+
+double steps_of(const Scene& s) { return static_cast<double>(test::record(s, 1).report.steps); }
+
+/// The plan after a trial of at most `budget` seconds.
+Plan foretold(const Scene& s, double budget = 10) {
+  Plan plan = make_plan(s);
+  foretell(make_trial(s, {}, budget), s, {}, plan);
+  return plan;
+}
+
+TEST(Trial, TellsStepsOfAFlowThatSpeedsUp) {
+  const Scene s = collapse();
+  const double steps = steps_of(s);
+  EXPECT_LT(make_plan(s).steps, 0.7 * steps);
+  const Plan plan = foretold(s);
+  ASSERT_TRUE(plan.trial);
+  EXPECT_EQ(plan.trial->cell_size, 0.04);
+  EXPECT_EQ(plan.trial->fraction, 1);
+  EXPECT_NEAR(plan.steps / steps, 1, 0.15);
+}
+
+TEST(Trial, TellsWhenAStageComesToRest) {
+  Scene s = test::plane(0.2, 1, 0.025, 20);
+  add_body(s, "column", BodyKind::soil, {0, 0, 0}, {0.2, 0.8, 0});
+  s.initial.stress = InitialStress::zero;
+  s.stages[0].damping = 0.7;
+  s.stages[0].until_rest = UntilRest{};
+  s.output.frame_interval = s.output.series_interval = 1;
+  const double steps = steps_of(s);
+  EXPECT_GT(make_plan(s).steps, 5 * steps);
+  EXPECT_NEAR(foretold(s).steps / steps, 1, 0.2);
+}
+
+/// On cells of the same size the walk is the run, through every event and stage.
+TEST(Trial, OnTheScenesOwnCellsCountsEveryStep) {
+  Scene s = test::plane(0.3, 0.7, 0.1, 0.031);
+  add_body(s, "bed", BodyKind::saturated_soil, {0, 0, 0}, {0.3, 0.3, 0});
+  add_body(s, "pool", BodyKind::water, {0, 0.3, 0}, {0.3, 0.5, 0});
+  s.output.series_interval = 0.0043, s.output.frame_interval = 0.01;
+  Stage second = s.stages[0];
+  second.name = "second", second.duration = 0.02, second.damping = 0.5;
+  s.stages.push_back(second);
+  s.numerics.cell_size_factor = 1;
+  const Plan plan = foretold(s);
+  ASSERT_TRUE(plan.trial);
+  const double exact = steps_of(s);
+  if (plan.trial->cell_size == s.cell_size()) {
+    EXPECT_EQ(plan.steps, exact);
+  } else {
+    EXPECT_NEAR(plan.steps / exact, 1, 0.1);
+  }
+}
+
+TEST(Trial, StoppedEarlyTellsByWhatItHasSeen) {
+  Scene s = collapse();
+  s.stages[0].duration = 300;
+  Trial trial = make_trial(s, {}, 0.2);
+  if (!trial.missing.empty()) GTEST_SKIP() << trial.missing;
+  Plan plan = make_plan(s);
+  foretell(trial, s, {}, plan);
+  EXPECT_GT(plan.steps, 300 / 0.15);
+  EXPECT_LE(trial.figures.seconds, 1);
+}
+
+TEST(Trial, IsMissingWhereNothingIsShortEnough) {
+  const Plan plan = foretold(collapse(), 1e-6);
+  EXPECT_FALSE(plan.trial);
+  EXPECT_NE(plan.reasons.back().find("No trial"), std::string::npos);
+  EXPECT_EQ(plan.steps, make_plan(collapse()).steps);
+}
+
+TEST(Trial, CountsFurtherStepsByThoseBefore) {
+  Scene s = collapse();
+  s.numerics.time_step = 1e-9;  // 3·10⁸ steps
+  Trial trial;
+  trial.figures.cell_size = 0.04;
+  trial.moments = {{0, 0, {}}};
+  Plan plan = make_plan(s);
+  foretell(trial, s, {}, plan);
+  EXPECT_NEAR(plan.steps, 3e8, 1e3);
+}
+
+/// Times are of this machine; what a calibration must be is of the same size in every kind of scene.
+TEST(Calibrate, MeasuresEveryKindOfScene) {
+  const Calibration measured = calibrate(), usual;
+  for (std::size_t k = 0; k < kSceneKinds; ++k) {
+    EXPECT_GT(measured.cost[k].point, usual.cost[k].point / 30) << k;
+    EXPECT_LT(measured.cost[k].point, usual.cost[k].point * 100) << k;
+    EXPECT_GE(measured.cost[k].step, 1e-7) << k;
+    EXPECT_LT(measured.cost[k].step, 1e-2) << k;
+  }
+}
+
+}  // namespace
+}  // namespace quicksand
