@@ -19,17 +19,24 @@ concept Keeps = requires(T& value, A& archive) {
   value.keep(archive);
 };
 
-/// Writes.
+/// Writes, or only counts what it would write.
 class Saver {
  public:
   static constexpr bool loading = false;
   std::string bytes;
+  bool only_counts = false;
+  std::size_t count = 0;  ///< bytes, if it only counts
 
   template <class... T>
   void operator()(T&... values) {
     (put(values), ...);
   }
-  void raw(const void* at, std::size_t size) { bytes.append(static_cast<const char*>(at), size); }
+  void raw(const void* at, std::size_t size) {
+    if (only_counts)
+      count += size;
+    else
+      bytes.append(static_cast<const char*>(at), size);
+  }
 
  private:
   template <class T>

@@ -44,6 +44,8 @@ struct Builder {
   }
 
   void places() {
+    const std::size_t count = soil.size() + fixed.size() + water.size();
+    frame.position.reserve(3 * count), frame.phase.reserve(count), frame.body.reserve(count);
     const auto each = [&](const auto& set, const std::vector<std::uint32_t>& order, std::uint8_t phase) {
       for (const std::size_t p : order) {
         for (int d = 0; d < 3; ++d) frame.position.push_back(d < D ? set.x[p][d] : 0);

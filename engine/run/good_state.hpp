@@ -24,6 +24,7 @@ class GoodState {
     Saver to;
     to.bytes = std::move(last_.state);  // its memory
     to.bytes.clear();
+    if (step_ < 0) reserve(to, keep);
     keep(to);
     last_ = std::move(facts);
     last_.state = std::move(to.bytes);
@@ -43,6 +44,16 @@ class GoodState {
 
  private:
   using Clock = std::chrono::steady_clock;
+
+  /// Room for the first state and a little more: one that grows as it is written takes three times as much.
+  template <class Keep>
+  static void reserve(Saver& to, Keep&& keep) {
+    Saver counter;
+    counter.only_counts = true;
+    keep(counter);
+    to.bytes.reserve(counter.count + counter.count / 16);
+  }
+
   static double seconds(Clock::time_point from, Clock::time_point to) {
     return std::chrono::duration<double>(to - from).count();
   }
@@ -53,7 +64,7 @@ class GoodState {
 
   const RunOptions& options_;
   Checkpoint last_;
-  long step_ = 0;  ///< steps that led to it
+  long step_ = -1;  ///< steps that led to it; −1: there is none
   Clock::time_point start_ = Clock::now(), stored_ = start_;
 };
 
