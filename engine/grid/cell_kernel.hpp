@@ -1,7 +1,8 @@
 #pragma once
-// Weights of points that lie in one cell, all at once. The faces that a kernel may reach from anywhere in a
-// cell are few: a window of four along the component's own axis and three along the others, and three centres
-// along every axis. What is on them is fetched once per cell, and walls are folded while it is.
+// Weights of points, some at once, in the windows of the cells they lie in. The faces that a kernel may reach
+// from anywhere in a cell are few: a window of four along the component's own axis and three along the
+// others, and three centres along every axis. What is on them is fetched once per cell, and walls are folded
+// while it is.
 
 #include <array>
 
@@ -38,14 +39,15 @@ QUICKSAND_INLINE WindowNodes<n> in_window(const Nodes<m, BatchLanes>& nodes) {
   return out;
 }
 
-/// Of up to `kBatch` points in one cell.
+/// Of up to `kBatch` points.
 template <int D, class Shape>
 struct CellKernel {
   std::array<WindowNodes<4>, D> face;    ///< along each axis, on the faces across it
   std::array<WindowNodes<3>, D> center;  ///< on the centres
 
-  /// x[d]: the places along axis d, in cell `c`; beyond its edges counts as on them.
-  QUICKSAND_INLINE void find(const Grid<D>& grid, const Cell<D>& c, const std::array<BatchLanes, D>& x) {
+  /// x[d]: the places along axis d, in the cells `c`; beyond their edges counts as on them.
+  QUICKSAND_INLINE void find(const Grid<D>& grid, const std::array<BatchLanes, D>& c,
+                             const std::array<BatchLanes, D>& x) {
     for (int d = 0; d < D; ++d) {
       const BatchLanes xi = clamped<BatchLanes>((x[d] - grid.origin[d]) * grid.inverse_h - c[d], BatchLanes{},
                                                 all_lanes<BatchLanes>(1));
@@ -123,8 +125,8 @@ struct WindowSum {
   std::array<BatchLanes, D> slope{};
 };
 
-/// at(x, y, z): value of a node, x along the component's own axis. second(nodes, i) stands for the derivative
-/// of node i's weight.
+/// at(x, y, z): value of a node, x along the component's own axis, for all points or for each. second(nodes,
+/// i) stands for the derivative of node i's weight.
 template <int d, int D, class Kernel, class At, class Second>
 QUICKSAND_INLINE WindowSum<D> window_sum(const Kernel& kernel, const At& at, const Second& second) {
   const auto& own = kernel.face[d];
@@ -136,7 +138,7 @@ QUICKSAND_INLINE WindowSum<D> window_sum(const Kernel& kernel, const At& at, con
     for (int y = 0; y < 3; ++y) {
       BatchLanes value{}, slope{};
       for (int x = 0; x < 4; ++x) {
-        const double v = at(x, y, z);
+        const auto v = at(x, y, z);
         value += own.w[x] * v;
         slope += second(own, x) * v;
       }

@@ -126,6 +126,17 @@ StepLimit::StepLimit(const SoilMaterial& soil, double water_density, double wate
   }
 }
 
+double StepLimit::least(Table Bounds::*table, const Range& n) const {
+  if (n.low > n.high) return std::numeric_limits<double>::infinity();
+  double smallest = std::min(look_up(table, n.low, softest_), look_up(table, n.high, softest_));
+  const Table& t = bounds_.front().*table;
+  for (int i = std::max(0, static_cast<int>(n.low * kEntries + 0.5)); i < kEntries; ++i) {
+    if ((i + 0.5) / kEntries >= n.high) break;
+    smallest = std::min(smallest, t[i]);
+  }
+  return smallest;
+}
+
 double StepLimit::look_up(Table Bounds::*table, double porosity, double modulus) const {
   const double at = std::clamp(porosity * kEntries - 0.5, 0.0, kEntries - 1.0001);
   const int i = static_cast<int>(at);

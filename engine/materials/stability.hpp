@@ -62,6 +62,16 @@ class StepLimit {
     return look_up(&Bounds::fast_wave, porosity, modulus);
   }
 
+  /// Some porosities, from the smallest to the largest; none while low > high.
+  struct Range {
+    double low = 2, high = -1;
+  };
+  /// The smallest bound of soil whose stiffness does not vary, with porosities of a range: of all that lie in
+  /// it. Infinite if there are none.
+  double least_dry(const Range& n) const { return least(&Bounds::dry, n); }
+  double least_saturated(const Range& n) const { return least(&Bounds::saturated, n); }
+  double least_fast_wave(const Range& n) const { return least(&Bounds::fast_wave, n); }
+
  private:
   static constexpr int kEntries = 50;
   using Table = std::array<double, kEntries>;
@@ -69,6 +79,7 @@ class StepLimit {
     Table dry{}, saturated{}, fast_wave{};
   };
   double look_up(Table Bounds::*table, double porosity, double modulus) const;
+  double least(Table Bounds::*table, const Range& n) const;
   std::vector<Bounds> bounds_;  ///< one, or one per stiffness
   double softest_ = 0;          ///< Pa, stiffness of the first
 };

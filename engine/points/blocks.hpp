@@ -9,6 +9,7 @@
 #include <initializer_list>
 #include <iterator>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "engine/grid/field.hpp"
@@ -78,7 +79,7 @@ class Blocks {
       if (!held_[b]) held_[b] = 1, holding.push_back(b);
     };
     for (const BlockList* list : lists)
-      for_runs(list->key, [&](int key, std::size_t, std::size_t) { hold(key / kCells); });
+      for (const int b : blocks_of(list->key)) hold(b);
     for (const int b : pinned_) hold(b);
     const std::vector<int> before = clear();
     for (const int b : holding) {
@@ -103,19 +104,26 @@ class Blocks {
     number();
   }
 
-  /// Groups located points by cell of the active blocks (stable counting sort of their indices).
+  /// Groups located points by cell of the active blocks (stable counting sort of their indices). Every part
+  /// of the points counts for itself, so that their order does not depend on the number of parts.
   void group(BlockList& list) const {
     const auto slot = [&](int key) { return (number_[key / kCells] - 1) * kCells + key % kCells; };
-    list.begin.assign(static_cast<std::size_t>(count()) * kCells + 1, 0);
-    for_runs(list.key, [&](int key, std::size_t from, std::size_t to) {
-      list.begin[slot(key) + 1] += static_cast<std::uint32_t>(to - from);
+    const std::size_t slots = static_cast<std::size_t>(count()) * kCells, parts = parts_of(list.key.size());
+    std::vector<std::uint32_t> next(parts * slots);  // per part and cell: how many; then the next one's place
+    for_parts(list.key, parts, [&](std::size_t part, int key, std::size_t from, std::size_t to) {
+      next[part * slots + slot(key)] += static_cast<std::uint32_t>(to - from);
     });
-    for (std::size_t i = 0; i + 1 < list.begin.size(); ++i) list.begin[i + 1] += list.begin[i];
+    list.begin.resize(slots + 1);
+    std::uint32_t at = 0;
+    for (std::size_t i = 0; i < slots; ++i) {
+      list.begin[i] = at;
+      for (std::size_t part = 0; part < parts; ++part) at += std::exchange(next[part * slots + i], at);
+    }
+    list.begin[slots] = at;
     list.order.resize(list.key.size());
-    std::vector<std::uint32_t> next(list.begin.begin(), list.begin.end() - 1);
-    for_runs(list.key, [&](int key, std::size_t from, std::size_t to) {
-      std::uint32_t& at = next[slot(key)];
-      for (std::size_t p = from; p < to; ++p) list.order[at++] = static_cast<std::uint32_t>(p);
+    for_parts(list.key, parts, [&](std::size_t part, int key, std::size_t from, std::size_t to) {
+      std::uint32_t& place = next[part * slots + slot(key)];
+      for (std::size_t p = from; p < to; ++p) list.order[place++] = static_cast<std::uint32_t>(p);
     });
   }
   /// Grouped points of an active block.
@@ -123,18 +131,11 @@ class Blocks {
     const auto first = static_cast<std::size_t>(number) * kCells;
     return {list.begin[first], list.begin[first + kCells]};
   }
-  /// f(cell, points) for the cells of an active block that hold grouped points.
-  template <class F>
-  void cells_with_points(const BlockList& list, int number, F&& f) const {
-    const Cell<D> low = low_cell(active_[number]);
-    const auto first = static_cast<std::size_t>(number) * kCells;
-    for (int k = 0; k < kCells; ++k) {
-      const PointRange points{list.begin[first + k], list.begin[first + k + 1]};
-      if (points.begin == points.end) continue;
-      Cell<D> c = low;
-      for (int d = 0, rest = k; d < D; rest /= kEdge, ++d) c[d] += rest % kEdge;
-      f(c, points);
-    }
+  /// Cell k of an active block, in the order of BlockList::begin.
+  Cell<D> cell(int number, int k) const {
+    Cell<D> c = low_cell(active_[number]);
+    for (int d = 0; d < D; k /= kEdge, ++d) c[d] += k % kEdge;
+    return c;
   }
 
   /// Active blocks. From here on a block is its number among them, in the order of their places.
@@ -199,13 +200,35 @@ class Blocks {
       for (std::size_t i = begin; i < end; ++i) f(i);
     });
   }
-  /// f(key, from, to) for stretches of equal keys, which are long where points lie in the order of blocks.
+  /// Parts in which threads go through points, where each needs room for all cells.
+  static std::size_t parts_of(std::size_t points) {
+    constexpr std::size_t least = 16384, most = 8;
+    return std::clamp<std::size_t>(points / least, 1, std::min<std::size_t>(most, thread_count()));
+  }
+  /// f(part, key, from, to) for stretches of equal keys, which are long where points lie in the order of
+  /// blocks. One thread does all of a part.
   template <class F>
-  static void for_runs(const std::vector<int>& key, F&& f) {
-    for (std::size_t from = 0, to; from < key.size(); from = to) {
-      for (to = from + 1; to < key.size() && key[to] == key[from];) ++to;
-      f(key[from], from, to);
-    }
+  static void for_parts(const std::vector<int>& key, std::size_t parts, F&& f) {
+    parallel_parts(parts, 1, [&](std::size_t first, std::size_t last) {
+      for (std::size_t part = first; part < last; ++part) {
+        const std::size_t end = key.size() * (part + 1) / parts;
+        for (std::size_t from = key.size() * part / parts, to; from < end; from = to) {
+          for (to = from + 1; to < end && key[to] == key[from];) ++to;
+          f(part, key[from], from, to);
+        }
+      }
+    });
+  }
+  /// Blocks that hold located points, some of them more than once.
+  static std::vector<int> blocks_of(const std::vector<int>& key) {
+    std::vector<std::vector<int>> found(parts_of(key.size()));
+    for_parts(key, found.size(), [&](std::size_t part, int k, std::size_t, std::size_t) {
+      std::vector<int>& mine = found[part];
+      if (mine.empty() || mine.back() != k / kCells) mine.push_back(k / kCells);
+    });
+    for (std::size_t part = 1; part < found.size(); ++part)
+      found[0].insert(found[0].end(), found[part].begin(), found[part].end());
+    return found[0];
   }
   /// Returns the blocks that were active; none are.
   std::vector<int> clear() {

@@ -36,17 +36,42 @@ struct FoldedWindow {
   double now(int x, int y, int z) const { return now_[x + 4 * (y + 3 * z)]; }
 };
 
+/// On the windows of two cells, in the lanes of the points of each.
+template <class Window, int D>
+struct PairedWindow {
+  const PointBatch<D>& batch;
+  Window first, second;
+  QUICKSAND_INLINE BatchLanes old(int x, int y, int z) const {
+    return batch.by_cell(first.old(x, y, z), second.old(x, y, z));
+  }
+  QUICKSAND_INLINE BatchLanes now(int x, int y, int z) const {
+    return batch.by_cell(first.now(x, y, z), second.now(x, y, z));
+  }
+};
+
 /// f(d, velocities) for all components, d as a type with the number as `value`.
 template <SpeedMembers members, int D, class F>
-QUICKSAND_INLINE void for_velocities(const State<D>& s, const CellWindow<D>& window, F&& f) {
-  const auto& grid = s.grid;
-  if (window.open())
+QUICKSAND_INLINE void for_velocities(const State<D>& s, const PointBatch<D>& batch, const BatchWindows<D>& at,
+                                     F&& f) {
+  using Open = OpenWindow<members>;
+  using Folded = FoldedWindow<members, D>;
+  const auto open = [&](int d, int cell) __attribute__((always_inline)) {
+    return Open{&s.speeds[d][at.home[cell]], FaceSteps(s.grid, d)};
+  };
+  if (!at.open())
     for_components<D>([&](auto d) __attribute__((always_inline)) {
-      f(d, OpenWindow<members>{&s.speeds[d][window.home()], FaceSteps(grid, d)});
+      const Folded first(s, at.window[0], d);
+      if constexpr (PointBatch<D>::kPairs)
+        f(d, PairedWindow<Folded, D>{batch, first, Folded(s, at.window[1], d)});
+      else
+        f(d, first);
+    });
+  else if (PointBatch<D>::kPairs && batch.cells == 2)
+    for_components<D>([&](auto d) __attribute__((always_inline)) {
+      f(d, PairedWindow<Open, D>{batch, open(d, 0), open(d, 1)});
     });
   else
-    for_components<D>([&](auto d)
-                          __attribute__((always_inline)) { f(d, FoldedWindow<members, D>(s, window, d)); });
+    for_components<D>([&](auto d) __attribute__((always_inline)) { f(d, open(d, 0)); });
 }
 /// Their sums for a batch's points, one by one.
 template <int d, int D, class Kernel, class Velocity>
@@ -97,19 +122,20 @@ QUICKSAND_INLINE void put_gradient(const Grid<D>& grid, const PointBatch<D>& bat
       set.affine[batch.point[k]][d][axis_of(d, j)] = grid.inverse_h * sum.slope[j][k];
 }
 
-/// Moves points of the cell `home` by `way`; returns how many a wall stopped.
+/// Moves points by `way`; returns how many a wall stopped.
 template <int D>
-QUICKSAND_INLINE int move_batch(const Grid<D>& grid, const Walls<D>& walls, int home, int count,
-                                std::array<BatchLanes, D>& x, const std::array<BatchLanes, D>& way) {
-  if (!walls.folds(home)) {
+QUICKSAND_INLINE int move_batch(const Grid<D>& grid, const Walls<D>& walls, const PointBatch<D>& batch,
+                                const BatchWindows<D>& windows, std::array<BatchLanes, D>& x,
+                                const std::array<BatchLanes, D>& way) {
+  if (windows.open()) {
     for (int d = 0; d < D; ++d) x[d] += way[d];
     return 0;
   }
   int stopped = 0;
-  for (int k = 0; k < count; ++k) {
+  for (int k = 0; k < batch.count; ++k) {
     Vec<D> at, by;
     for (int d = 0; d < D; ++d) at[d] = x[d][k], by[d] = way[d][k];
-    stopped += move_beside_walls<D>(grid, walls, at, by);
+    stopped += move_point<D>(grid, walls, windows.home[batch.cell_of(k)], at, by);
     for (int d = 0; d < D; ++d) x[d][k] = at[d];
   }
   return stopped;

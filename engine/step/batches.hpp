@@ -1,5 +1,5 @@
 #pragma once
-// Loops over the points of a block, cell by cell, some of a cell at a time with their weights.
+// Loops over the points of a block, cell by cell, some at a time with their weights.
 
 #include <utility>
 
@@ -33,18 +33,40 @@ QUICKSAND_INLINE std::array<BatchLanes, n> columns(const double* first, int coun
 
 }  // namespace batch
 
-/// Some points of one cell. Lanes beyond `count` hold zeros or the first one's values.
+/// Some points of one or two cells of a block: those of the first, then those of the second. Lanes beyond
+/// `count` hold zeros or the first one's values.
 template <int D>
 struct PointBatch {
-  int count = 0;
+  /// In space a cell's points fill the lanes by themselves, and two windows cost more than lanes left empty.
+  static constexpr bool kPairs = D == 2;
+  int count = 0, cells = 1;
+  std::array<Cell<D>, 2> cell{};  ///< the same twice if it is one
+  std::array<int, 2> end{};       ///< lane behind the last point of each cell
   std::array<std::uint32_t, kBatch> point;
   bool in_a_row = false;  ///< one after the other in memory
 
-  PointBatch(const BlockList& list, PointRange range) {
-    count = static_cast<int>(std::min<std::uint32_t>(kBatch, range.end - range.begin));
-    const std::uint32_t* from = &list.order[range.begin];
+  void fill(const std::uint32_t* from) {
     for (int k = 0; k < kBatch; ++k) point[k] = from[k < count ? k : 0];
-    in_a_row = from[count - 1] - from[0] == static_cast<std::uint32_t>(count - 1);
+    // Those of each cell ascend.
+    const int last = end[0] - 1;
+    in_a_row = from[last] - from[0] == static_cast<std::uint32_t>(last);
+    if (cells == 2)
+      in_a_row = in_a_row && from[end[0]] - from[last] == 1 &&
+                 from[count - 1] - from[0] == static_cast<std::uint32_t>(count - 1);
+  }
+  /// Which of the cells point k lies in.
+  int cell_of(int k) const { return kPairs && k >= end[0]; }
+  /// `first` in the lanes of the first cell's points, `second` in those of the other.
+  QUICKSAND_INLINE BatchLanes by_cell(double first, double second) const {
+    if constexpr (!kPairs) return all_lanes<BatchLanes>(first);
+    const BatchLanes lane{0, 1, 2, 3, 4, 5, 6, 7};
+    return where(lane < end[0], all_lanes<BatchLanes>(first), all_lanes<BatchLanes>(second));
+  }
+  /// Coordinates of the points' cells.
+  QUICKSAND_INLINE std::array<BatchLanes, D> places() const {
+    std::array<BatchLanes, D> at;
+    for (int d = 0; d < D; ++d) at[d] = by_cell(cell[0][d], cell[1][d]);
+    return at;
   }
   /// v in the lanes of these points, else 0.
   QUICKSAND_INLINE BatchLanes only(const BatchLanes& v) const {
@@ -78,12 +100,71 @@ struct PointBatch {
   }
 };
 
-/// f(cell, its batch of points) for the points of block b.
+/// The points of a block in batches. Beside the last ones of a cell goes the next cell, if all of it fits:
+/// most of what a batch writes is once per cell, however few of its points it holds.
+template <int D>
+class BatchWalk {
+ public:
+  BatchWalk(const Blocks<D>& blocks, const BlockList& list, int block)
+      : blocks_(blocks), list_(list), block_(block), begin_(&list.begin[block * std::size_t{blocks.kCells}]) {
+    at_ = begin_[0];
+  }
+  /// False when there are no more.
+  bool next(PointBatch<D>& batch) {
+    const std::uint32_t last = begin_[Blocks<D>::kCells];
+    if (at_ == last) return false;
+    go_to(at_);
+    const std::uint32_t first = std::min(begin_[cell_ + 1], at_ + kBatch);
+    batch.cell[0] = batch.cell[1] = blocks_.cell(block_, cell_);
+    batch.end[0] = static_cast<int>(first - at_);
+    std::uint32_t end = first;
+    if (PointBatch<D>::kPairs && first < last) {
+      go_to(first);
+      if (begin_[cell_ + 1] - at_ <= kBatch) end = begin_[cell_ + 1];
+      if (end > first) batch.cell[1] = blocks_.cell(block_, cell_);
+    }
+    batch.cells = end > first ? 2 : 1;
+    batch.count = batch.end[1] = static_cast<int>(end - at_);
+    batch.fill(&list_.order[at_]);
+    at_ = end;
+    return true;
+  }
+
+ private:
+  /// To the cell that holds the point at a place.
+  void go_to(std::uint32_t place) {
+    while (begin_[cell_ + 1] <= place) ++cell_;
+  }
+
+  const Blocks<D>& blocks_;
+  const BlockList& list_;
+  int block_, cell_ = 0;
+  const std::uint32_t* begin_;  ///< of the block's cells
+  std::uint32_t at_ = 0;        ///< in BlockList::order
+};
+
+/// f(batch) for the points of block b.
 template <int D, class F>
 void for_batches(const Blocks<D>& blocks, const BlockList& list, int b, F&& f) {
-  blocks.cells_with_points(list, b, [&](const Cell<D>& cell, PointRange points) {
-    for (; points.begin < points.end; points.begin += kBatch) f(cell, PointBatch<D>(list, points));
-  });
+  BatchWalk<D> walk(blocks, list, b);
+  for (PointBatch<D> batch; walk.next(batch);) f(batch);
 }
+
+/// The windows of a batch's cells: the same twice if it is one.
+template <int D>
+struct BatchWindows {
+  std::array<int, 2> home;
+  std::array<CellWindow<D>, 2> window;
+  BatchWindows(const Grid<D>& grid, const Walls<D>& walls, const PointBatch<D>& batch)
+      : home{grid.index(batch.cell[0]), grid.index(batch.cell[1])},
+        window{CellWindow<D>(grid, walls, home[0]), CellWindow<D>(grid, walls, home[1])} {}
+  bool open() const { return window[0].open() && window[1].open(); }  ///< no wall is in reach
+  /// f(window, lane of the first point, lane behind the last one) for each cell.
+  template <class F>
+  QUICKSAND_INLINE void each(const PointBatch<D>& batch, F&& f) const {
+    f(window[0], 0, batch.end[0]);
+    if (PointBatch<D>::kPairs && batch.cells == 2) f(window[1], batch.end[0], batch.end[1]);
+  }
+};
 
 }  // namespace quicksand

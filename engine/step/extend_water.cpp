@@ -56,17 +56,17 @@ bool extrapolate(const State<D>& s, int d, int face, std::uint8_t level, double 
 }  // namespace
 
 template <int D>
-void extend_water(State<D>& s) {
+void extend_water(State<D>& s, const std::vector<std::uint8_t>& blocks) {
   const double wave = cell_wave(s);
   // A kernel reaches 1½ cells: two rings of faces beyond the last wet one.
   for (const std::uint8_t level : {std::uint8_t{2}, std::uint8_t{3}})
     s.blocks.all([&](int b) {
+      if (!blocks[b]) return;
       s.blocks.cells(s.grid, b, true, [&](int face, const Cell<D>&) {
         for (int d = 0; d < D; ++d) {
           FaceFlow& f = s.flow[d][face];
           if (f.wet || s.water_walls.closed(d, face) || in_plate(s, d, face)) continue;
-          // Hats reach faces at which their weight is zero and its gradient is not.
-          if (s.sums[d][face].water_mass <= 0 && s.constants.kernel != Kernel::linear) continue;
+          if (!may_be_extended(s, d, face)) continue;
           double v;
           if (extrapolate(s, d, face, level, wave, v)) {
             s.speeds[d][face].water = v;
@@ -77,7 +77,7 @@ void extend_water(State<D>& s) {
     });
 }
 
-template void extend_water<2>(State<2>&);
-template void extend_water<3>(State<3>&);
+template void extend_water<2>(State<2>&, const std::vector<std::uint8_t>&);
+template void extend_water<3>(State<3>&, const std::vector<std::uint8_t>&);
 
 }  // namespace quicksand

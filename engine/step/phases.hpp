@@ -77,9 +77,16 @@ void unfold_plates(State<D>& s);
 /// Velocities after the pressure gradient; those of the water go on into the air → `speeds`, `flow`.
 template <int D>
 void correct_velocities(State<D>& s);
-/// Velocities of the water at the faces next to its surface, extrapolated → `speeds`.
+/// Whether the water's velocity at a face without pressure is asked for: hats reach faces at which their
+/// weight is zero and its gradient is not.
 template <int D>
-void extend_water(State<D>& s);
+inline bool may_be_extended(const State<D>& s, int d, int face) {
+  return s.sums[d][face].water_mass > 0 || s.constants.kernel == Kernel::linear;
+}
+/// Velocities of the water at the faces next to its surface, extrapolated → `speeds`; in those active blocks,
+/// by their numbers, that hold a face for it.
+template <int D>
+void extend_water(State<D>& s, const std::vector<std::uint8_t>& blocks);
 /// Impulses (N·s) that supports give to the points in this step: walls and fixed grains, with the water's
 /// pressure on them; the water surface to the drops that it carries; and damping. Summed from forces, not
 /// from the change of momentum, so that the ledger's balance is a check.

@@ -66,4 +66,42 @@ class MotionTotals {
   BatchLanes mass_{}, kinetic_{}, max_speed2_{}, finite_{};
 };
 
+/// Porosities of the soil points in a block, lane by lane: of those next to air and of the others.
+class PorosityRanges {
+ public:
+  /// `confined`: 1 for points that are, else 0.
+  template <int D>
+  QUICKSAND_INLINE void add(const PointBatch<D>& batch, const BatchLanes& n, const BatchLanes& confined) {
+    const BatchLanes there = batch.only(all_lanes<BatchLanes>(1));
+    dry_.add(n, there * (1.0 - confined) > 0.5);
+    saturated_.add(n, there * confined > 0.5);
+  }
+  /// Next to the air no pressure resists, so that the frame's own wave is the bound.
+  template <int D>
+  void add_to(Totals<D>& totals, const StepLimit& limit, bool explicit_pressure) const {
+    const StepLimit::Range dry = dry_.range(), saturated = saturated_.range();
+    totals.soil_limit = std::min({totals.soil_limit, limit.least_dry(dry), limit.least_saturated(saturated)});
+    if (!explicit_pressure) return;
+    totals.fast_wave_limit =
+        std::min({totals.fast_wave_limit, limit.least_fast_wave(dry), limit.least_fast_wave(saturated)});
+  }
+
+ private:
+  struct Extremes {
+    BatchLanes low = all_lanes<BatchLanes>(2), high = all_lanes<BatchLanes>(-1);
+    template <class Mask>
+    QUICKSAND_INLINE void add(const BatchLanes& n, const Mask& of) {
+      low = where(of & (n < low), n, low);
+      high = where(of & (n > high), n, high);
+    }
+    StepLimit::Range range() const {
+      StepLimit::Range all;
+      for (int k = 0; k < kBatch; ++k)
+        all.low = std::min(all.low, low[k]), all.high = std::max(all.high, high[k]);
+      return all;
+    }
+  };
+  Extremes dry_, saturated_;
+};
+
 }  // namespace quicksand

@@ -14,13 +14,13 @@ struct SoilMotion {
 };
 
 template <class S, int D>
-QUICKSAND_INLINE SoilMotion<D> soil_motion(State<D>& s, const CellWindow<D>& window,
+QUICKSAND_INLINE SoilMotion<D> soil_motion(State<D>& s, const BatchWindows<D>& windows,
                                            const CellKernel<D, typename S::Shape>& kernel,
                                            const PointBatch<D>& batch, double dt, double pic) {
   SoilMotion<D> motion;
   motion.v = batch.get(s.soil.v);
   for_velocities<kSoilSpeeds>(
-      s, window, [&](auto d, const auto& grid) __attribute__((always_inline)) {
+      s, batch, windows, [&](auto d, const auto& grid) __attribute__((always_inline)) {
         const BatchLanes before = old_value<d, D>(kernel, grid);
         const WindowSum<D> after = new_sum<d, D>(
             kernel, grid,
@@ -48,11 +48,35 @@ QUICKSAND_INLINE BatchLanes strained_porosity(const BatchLanes& before, const Ba
   return n;
 }
 
+/// The steps that the points allow, with `touching` their porosities. Where all are of one soil of one
+/// stiffness, `porosities` tell them at the end of the block.
+template <int D>
+QUICKSAND_INLINE void allow_steps(const State<D>& s, const PointBatch<D>& batch,
+                                  const BatchWindows<D>& windows,
+                                  const std::array<const SoilMaterial*, kBatch>& material,
+                                  const SoilState<D, BatchLanes>& now, const BatchLanes& touching,
+                                  Totals<D>& totals, PorosityRanges& porosities) {
+  const std::array<bool, 2> confined{s.cell[windows.home[0]].confined, s.cell[windows.home[1]].confined};
+  if (s.constants.one_stiffness()) {
+    porosities.add(batch, touching, batch.by_cell(confined[0], confined[1]));
+    return;
+  }
+  for (int k = 0; k < batch.count; ++k) {
+    const double n = touching[k], modulus = material[k]->template constrained_modulus<D>(lane_of(now, k), n);
+    const StepLimit& limit = s.constants.step_limits[s.soil.soil[batch.point[k]]];
+    totals.soil_limit = std::min(
+        totals.soil_limit, confined[batch.cell_of(k)] ? limit.saturated(n, modulus) : limit.dry(n, modulus));
+    if (s.constants.explicit_pressure)
+      totals.fast_wave_limit = std::min(totals.fast_wave_limit, limit.fast_wave(n, modulus));
+  }
+}
+
 /// Stress and what else the law keeps, and the steps that the points allow.
 template <class S, int D>
-QUICKSAND_INLINE BatchLanes update_soil(State<D>& s, const PointBatch<D>& batch, bool confined,
-                                        const Gradient<D, BatchLanes>& l, double dt, const BatchLanes& hoop,
-                                        Totals<D>& totals) {
+QUICKSAND_INLINE BatchLanes update_soil(State<D>& s, const PointBatch<D>& batch,
+                                        const BatchWindows<D>& windows, const Gradient<D, BatchLanes>& l,
+                                        double dt, const BatchLanes& hoop, Totals<D>& totals,
+                                        PorosityRanges& porosities) {
   SoilPoints<D>& soil = s.soil;
   std::array<const SoilMaterial*, kBatch> material;
   material.fill(&s.constants.soils.front());
@@ -79,36 +103,25 @@ QUICKSAND_INLINE BatchLanes update_soil(State<D>& s, const PointBatch<D>& batch,
   batch.put(now.stress, soil.stress);
   batch.put(now.plastic_strain, soil.plastic_strain);
   if (!soil.preconsolidation.empty()) batch.put(now.preconsolidation, soil.preconsolidation);
-  // Next to the air no pressure resists, so that the frame's own wave is the bound. Grains that do not touch
-  // may touch again in the next step.
-  for (int k = 0; k < batch.count; ++k) {
-    const double touching = std::min(n[k], max_porosity[k]);
-    const double modulus = material[k]->template constrained_modulus<D>(lane_of(now, k), touching);
-    const StepLimit& limit = s.constants.step_limits[soil.soil[batch.point[k]]];
-    totals.soil_limit = std::min(
-        totals.soil_limit, confined ? limit.saturated(touching, modulus) : limit.dry(touching, modulus));
-    if (s.constants.explicit_pressure)
-      totals.fast_wave_limit = std::min(totals.fast_wave_limit, limit.fast_wave(touching, modulus));
-  }
+  // Grains that do not touch may touch again in the next step.
+  allow_steps<D>(s, batch, windows, material, now, where(apart, max_porosity, n), totals, porosities);
   return trace(now.stress);
 }
 
 template <class S, int D>
-void soil_from_faces(State<D>& s, const Cell<D>& cell, const PointBatch<D>& batch, double dt, double pic,
-                     Totals<D>& totals, MotionTotals<D>& motion_totals) {
-  const int home = s.grid.index(cell);
+void soil_from_faces(State<D>& s, const PointBatch<D>& batch, double dt, double pic, Totals<D>& totals,
+                     MotionTotals<D>& motion_totals, PorosityRanges& porosities) {
   std::array<BatchLanes, D> x = batch.get(s.soil.x);
   CellKernel<D, typename S::Shape> kernel;
-  kernel.find(s.grid, cell, x);
-  const SoilMotion<D> motion =
-      soil_motion<S, D>(s, CellWindow<D>(s.grid, s.soil_walls, home), kernel, batch, dt, pic);
+  kernel.find(s.grid, batch.places(), x);
+  const BatchWindows<D> windows(s.grid, s.soil_walls, batch);
+  const SoilMotion<D> motion = soil_motion<S, D>(s, windows, kernel, batch, dt, pic);
   BatchLanes hoop{};  // 1/s, v_r/r
   if constexpr (S::axial) hoop = motion.way[0] / (dt * x[0]);
-  totals.interventions.clipped_points +=
-      move_batch<D>(s.grid, s.soil_walls, home, batch.count, x, motion.way);
+  totals.interventions.clipped_points += move_batch<D>(s.grid, s.soil_walls, batch, windows, x, motion.way);
   batch.put(x, s.soil.x);
   batch.put(motion.v, s.soil.v);
-  const BatchLanes stress = update_soil<S, D>(s, batch, s.cell[home].confined, motion.l, dt, hoop, totals);
+  const BatchLanes stress = update_soil<S, D>(s, batch, windows, motion.l, dt, hoop, totals, porosities);
   motion_totals.add(batch, s.soil.mass, motion.v, stress);
 }
 

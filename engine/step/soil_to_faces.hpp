@@ -138,13 +138,12 @@ QUICKSAND_INLINE void add_to_centers(const Kernel& kernel, int k, const T& value
 }
 
 template <class S, int D>
-void soil_to_faces(State<D>& s, const Cell<D>& cell, const PointBatch<D>& batch) {
+void soil_to_faces(State<D>& s, const PointBatch<D>& batch) {
   const std::array<BatchLanes, D> x = batch.get(s.soil.x), v = batch.get(s.soil.v);
   CellKernel<D, typename S::Shape> kernel;
-  kernel.find(s.grid, cell, x);
+  kernel.find(s.grid, batch.places(), x);
   const SoilShare<D> share = soil_share(s, batch);
-  const int home = s.grid.index(cell);
-  const CellWindow<D> window(s.grid, s.soil_walls, home);
+  const BatchWindows<D> windows(s.grid, s.soil_walls, batch);
   const Lanes<8> kept{1, 1, 1, 1, 1, 1, 0, 0}, turned{1, 1, 1, -1, -1, 1, 0, 0};
   for_components<D>([&](auto d) __attribute__((always_inline)) {
     BatchLanes hoop{};  // about an axis σθθ/r pulls towards it: the weak form's σθθ v_r/r
@@ -156,24 +155,31 @@ void soil_to_faces(State<D>& s, const Cell<D>& cell, const PointBatch<D>& batch)
     const std::array<Lanes<8>, 8> carried =
         transposed({share.mass, share.grains, share.bulk, share.mass * v[d], hoop, share.resistivity,
                     share.row(d, d), turning[0]});
-    std::array<Lanes<8>, CellWindow<D>::kFaces> sums{};
-    for (int k = 0; k < batch.count; ++k) add_soil<S, D>(kernel.face[d], rows, k, carried[k], sums);
-    window.faces(
-        d, [&](int node, int face, double sign) __attribute__((always_inline)) {
-          const Lanes<8> own = __builtin_shufflevector(sums[node], Lanes<8>{}, 8, 8, 8,
-                                                       S::affine ? kOwnMomentum : 8, kOwnForce, 8, 8, 8);
-          add_lanes<8>(s.sums[d][face].soil_mass, (sign < 0 ? turned : kept) * (sums[node] + own));
-          if (sign < 0) s.image[d][face].soil += 2 * sums[node][0];
+    windows.each(
+        batch, [&](const auto& window, int from, int to) __attribute__((always_inline)) {
+          std::array<Lanes<8>, CellWindow<D>::kFaces> sums{};
+          for (int k = from; k < to; ++k) add_soil<S, D>(kernel.face[d], rows, k, carried[k], sums);
+          window.faces(
+              d, [&](int node, int face, double sign) __attribute__((always_inline)) {
+                const Lanes<8> own = __builtin_shufflevector(
+                    sums[node], Lanes<8>{}, 8, 8, 8, S::affine ? kOwnMomentum : 8, kOwnForce, 8, 8, 8);
+                add_lanes<8>(s.sums[d][face].soil_mass, (sign < 0 ? turned : kept) * (sums[node] + own));
+                if (sign < 0) s.image[d][face].soil += 2 * sums[node][0];
+              });
         });
   });
   if (!s.counts_room) return;
   // Room is measured with the water's own kernels, so that grains and water fold at the same walls.
-  std::array<Lanes<2>, CellWindow<D>::kCenters> room{};
-  for (int k = 0; k < batch.count; ++k)
-    add_to_centers<D>(kernel, k, Lanes<2>{share.grains[k], share.bulk[k]}, room);
-  CellWindow<D>(s.grid, s.water_walls, home).centers([&](int node, int to) __attribute__((always_inline)) {
-    add_lanes<2>(s.cell_sums[to].grains, room[node]);
-  });
+  const BatchWindows<D> cells(s.grid, s.water_walls, batch);
+  cells.each(
+      batch, [&](const auto& window, int from, int to) __attribute__((always_inline)) {
+        std::array<Lanes<2>, CellWindow<D>::kCenters> room{};
+        for (int k = from; k < to; ++k)
+          add_to_centers<D>(kernel, k, Lanes<2>{share.grains[k], share.bulk[k]}, room);
+        window.centers([&](int node, int cell) __attribute__((always_inline)) {
+          add_lanes<2>(s.cell_sums[cell].grains, room[node]);
+        });
+      });
 }
 
 }  // namespace quicksand

@@ -131,6 +131,8 @@ struct Constants {
   int points_per_cell = 2;         ///< per axis, of points that enter
   std::vector<SoilMaterial> soils;
   std::vector<StepLimit> step_limits;  ///< per soil
+  /// Whether porosity alone tells a point's step.
+  bool one_stiffness() const { return soils.size() == 1 && !soils.front().varies_stiffness(); }
 };
 
 /// Carries its part of a surface load in the layer of soil below the surface; moves with the grains.

@@ -27,12 +27,10 @@ void points_to_faces(State<D>& s) {
   with_scheme(s, [&](auto scheme) {
     using S = decltype(scheme);
     s.blocks.by_color([&](int b) {
-      for_batches(s.blocks, s.soil_blocks, b, [&](const Cell<D>& cell, const PointBatch<D>& batch) {
-        soil_to_faces<S, D>(s, cell, batch);
-      });
-      for_batches(s.blocks, s.water_blocks, b, [&](const Cell<D>& cell, const PointBatch<D>& batch) {
-        water_to_faces<S, D>(s, cell, batch);
-      });
+      for_batches(s.blocks, s.soil_blocks, b,
+                  [&](const PointBatch<D>& batch) { soil_to_faces<S, D>(s, batch); });
+      for_batches(s.blocks, s.water_blocks, b,
+                  [&](const PointBatch<D>& batch) { water_to_faces<S, D>(s, batch); });
     });
   });
   loads_to_faces(s);

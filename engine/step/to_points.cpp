@@ -23,14 +23,16 @@ void faces_to_points(State<D>& s, double dt, StepReport<D>& report) {
     return s.blocks.template sum<Totals<D>>([&](int b) {
       Totals<D> t;
       MotionTotals<D> soil, water;
-      for_batches(s.blocks, s.soil_blocks, b, [&](const Cell<D>& cell, const PointBatch<D>& batch) {
-        soil_from_faces<S, D>(s, cell, batch, dt, pic, t, soil);
+      PorosityRanges porosities;
+      for_batches(s.blocks, s.soil_blocks, b, [&](const PointBatch<D>& batch) {
+        soil_from_faces<S, D>(s, batch, dt, pic, t, soil, porosities);
       });
       soil.add_to(t);
+      if (s.constants.one_stiffness())
+        porosities.add_to(t, s.constants.step_limits.front(), s.constants.explicit_pressure);
       t.max_soil_speed2 = t.max_speed2;
-      for_batches(s.blocks, s.water_blocks, b, [&](const Cell<D>& cell, const PointBatch<D>& batch) {
-        water_from_faces<S, D>(s, cell, batch, dt, pic, t, water);
-      });
+      for_batches(s.blocks, s.water_blocks, b,
+                  [&](const PointBatch<D>& batch) { water_from_faces<S, D>(s, batch, dt, pic, t, water); });
       water.add_to(t);
       return t;
     });

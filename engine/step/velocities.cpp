@@ -52,20 +52,21 @@ void solve_pair(const Balance& b, double dt, FaceTrial& f) {
   // a11 a22 − a12 a21 without its products of two drags, which cancel: at 10⁻¹⁴ m/s nothing else would be
   // left.
   const double free = b.water_mass + b.fixed_drag, det = b.soil_mass * a22 + b.drag * free;
-  f.soil = (a22 * b.soil_momentum - a12 * b.water_momentum) / det;
-  f.water = (a11 * b.water_momentum - a21 * b.soil_momentum) / det;
-  f.soil_response = dt * (a22 * f.pushed - a12 * f.n) / det;
-  f.water_response = dt * (a11 * f.n - a21 * f.pushed) / det;
-  f.slip = (b.soil_mass * b.water_momentum - free * b.soil_momentum) / det;
-  f.slip_response = dt * (b.soil_mass * f.n - free * f.pushed) / det;
+  const double inverse = 1 / det, per_gradient = dt * inverse;
+  f.soil = (a22 * b.soil_momentum - a12 * b.water_momentum) * inverse;
+  f.water = (a11 * b.water_momentum - a21 * b.soil_momentum) * inverse;
+  f.soil_response = (a22 * f.pushed - a12 * f.n) * per_gradient;
+  f.water_response = (a11 * f.n - a21 * f.pushed) * per_gradient;
+  f.slip = (b.soil_mass * b.water_momentum - free * b.soil_momentum) * inverse;
+  f.slip_response = (b.soil_mass * f.n - free * f.pushed) * per_gradient;
 }
 
 /// Water past grains that are held.
 void solve_water(const Balance& b, double dt, FaceTrial& f) {
-  const double a = b.water_mass + b.water_drag + b.fixed_drag;
+  const double inverse = 1 / (b.water_mass + b.water_drag + b.fixed_drag);
   f.soil = f.soil_response = 0;
-  f.water = f.slip = b.water_momentum / a;
-  f.water_response = f.slip_response = dt * f.n / a;
+  f.water = f.slip = b.water_momentum * inverse;
+  f.water_response = f.slip_response = dt * f.n * inverse;
 }
 
 void solve_soil(const Balance& b, double dt, FaceTrial& f) {
@@ -195,8 +196,9 @@ FaceTrial predicted(State<D>& s, int d, int face, double dt) {
   // holds is dense over that half, and the pressure falls over that half only.
   const double soaked = soil && water && !wet ? soak(s, d, face, f) : 0;
   const double part = wet ? wet_part(s, d, face) : soaked > 0 ? soaked : 1;
+  const double per_volume = 1 / (part * volume);
   Balance b;
-  f.phi = sums.grains / (part * volume);
+  f.phi = sums.grains * per_volume;
   double fixed_phi = 0, fixed_resistivity = 0;
   if (P::soil && s.fixed.size()) {
     fixed_phi = s.fixed_face[d][face].phi / part;
@@ -204,24 +206,24 @@ FaceTrial predicted(State<D>& s, int d, int face, double dt) {
   }
   f.n = std::max(1 - f.phi - fixed_phi, kMinRoom);
   f.pushed = f.phi;
-  if (wet) f.pushed = pushed_part(f.phi, sums.resistivity / (part * volume), fixed_phi, fixed_resistivity);
+  if (wet) f.pushed = pushed_part(f.phi, sums.resistivity * per_volume, fixed_phi, fixed_resistivity);
   if (soil) {
     f.soil_old = sums.soil_momentum / sums.soil_mass;
-    b.soil_mass = inertia * sums.soil_mass / (part * volume);
-    b.soil_momentum = b.soil_mass * (f.soil_old + dt * fall) + dt * sums.soil_force / (part * volume);
+    b.soil_mass = inertia * sums.soil_mass * per_volume;
+    b.soil_momentum = b.soil_mass * (f.soil_old + dt * fall) + dt * sums.soil_force * per_volume;
     if (wet) b.soil_momentum -= dt * (f.phi - f.pushed) * rho * s.constants.gravity[d];
   }
   if (water || wet) {
     // Inertia of a wet face is that of a full one, n ρw, not of the few drops whose kernels reach it; where
     // there is no pressure, drops carry and are dragged by what is there.
     const double full = f.n * rho;
-    const double there = wet ? 1 : std::min(1.0, sums.water_mass / (part * volume * full));
+    const double there = wet ? 1 : std::min(1.0, sums.water_mass * per_volume / full);
     f.water_old = water ? sums.water_momentum / sums.water_mass : 0;
     b.water_mass = inertia * there * full;
     f.viscous = water && s.constants.viscosity > 0 ? viscous_acceleration(s, d, face) : 0;
     b.water_momentum = b.water_mass * (f.water_old + dt * (fall + f.viscous / inertia));
-    if (soil) b.drag = dt * there * f.n * f.n * sums.resistivity / (part * volume);
-    const double share = wet ? sums.water_mass / (part * volume * full) : 1;
+    if (soil) b.drag = dt * there * f.n * f.n * sums.resistivity * per_volume;
+    const double share = wet ? sums.water_mass * per_volume / full : 1;
     b.water_drag = b.drag / std::max(share, kLeastWetPart);
     b.drag = share * b.water_drag;  // less on the grains, too, where next to no water is
     f.fixed_drag = f.n * f.n * fixed_resistivity;
@@ -270,6 +272,8 @@ void predict_velocities(State<D>& s, double dt) {
 
 template <int D>
 void correct_velocities(State<D>& s) {
+  std::vector<std::uint8_t> beyond(
+      s.blocks.count());  // per block, whether water is on faces without pressure
   with_phases(s, [&](auto phases) {
     using P = decltype(phases);
     s.blocks.all([&](int b) {
@@ -279,6 +283,7 @@ void correct_velocities(State<D>& s) {
           if constexpr (P::water) {
             FaceFlow& f = s.flow[d][face];
             const double g = gradient_on_grains(s, d, face);
+            if (!f.wet && may_be_extended(s, d, face)) beyond[b] = 1;
             if (f.wet || f.soaked > 0) v.water -= f.water_response * g;
             if constexpr (P::soil) {
               v.soil -= f.soil_response * g;
@@ -292,7 +297,7 @@ void correct_velocities(State<D>& s) {
     });
   });
   if (s.constants.kernel == Kernel::linear) follow_leaders(s);
-  if (s.has_water) extend_water(s);
+  if (s.has_water) extend_water(s, beyond);
 }
 
 template double pressure_gradient<2>(const State<2>&, const Field<double>&, int, int);

@@ -12,22 +12,27 @@ namespace quicksand {
 /// Points of a surface at rest lie a quarter of a cell below it.
 constexpr double kFreeHeight = 0.25;
 
-/// Which of a cell's points fall freely.
+/// Which of a batch's points fall freely.
 template <int D, class Kernel>
-QUICKSAND_INLINE std::array<bool, kBatch> falling(const State<D>& s, const CellWindow<D>& window, int home,
-                                                  const Kernel& kernel) {
+QUICKSAND_INLINE std::array<bool, kBatch> falling(const State<D>& s, const PointBatch<D>& batch,
+                                                  const BatchWindows<D>& at, const Kernel& kernel) {
   std::array<bool, kBatch> falls{};
-  if (s.cell[home].confined) return falls;
-  std::array<double, CellWindow<D>::kCenters> depth;
-  window.centers([&](int node, int cell) { depth[node] = s.cell[cell].depth; });
+  const std::array<bool, 2> confined{s.cell[at.home[0]].confined, s.cell[at.home[1]].confined};
+  if (confined[0] && confined[1]) return falls;
+  std::array<std::array<double, CellWindow<D>::kCenters>, 2> depth;
+  for (int c = 0; c < 2; ++c)
+    at.window[c].centers([&](int node, int cell) { depth[c][node] = s.cell[cell].depth; });
   BatchLanes at_point{};
   for (int z = 0; z < CellWindow<D>::kLast; ++z)
     for (int y = 0; y < 3; ++y) {
       BatchLanes row{};
-      for (int x = 0; x < 3; ++x) row += kernel.center[0].w[x] * depth[x + 3 * (y + 3 * z)];
+      for (int x = 0; x < 3; ++x) {
+        const int node = x + 3 * (y + 3 * z);
+        row += kernel.center[0].w[x] * batch.by_cell(depth[0][node], depth[1][node]);
+      }
       at_point += (D == 2 ? kernel.center[1].w[y] : kernel.center[1].w[y] * kernel.center[D - 1].w[z]) * row;
     }
-  for (int k = 0; k < kBatch; ++k) falls[k] = at_point[k] < -kFreeHeight;
+  for (int k = 0; k < batch.count; ++k) falls[k] = at_point[k] < -kFreeHeight && !confined[batch.cell_of(k)];
   return falls;
 }
 
@@ -73,23 +78,22 @@ Vec<D> carried_way(const State<D>& s, const Vec<D>& middle, double dt) {
 }
 
 template <class S, int D>
-void water_from_faces(State<D>& s, const Cell<D>& cell, const PointBatch<D>& batch, double dt, double pic,
-                      Totals<D>& totals, MotionTotals<D>& motion_totals) {
+void water_from_faces(State<D>& s, const PointBatch<D>& batch, double dt, double pic, Totals<D>& totals,
+                      MotionTotals<D>& motion_totals) {
   using Shape = typename S::Shape;
   using Lanes = std::array<BatchLanes, D>;
-  const int home = s.grid.index(cell);
   Lanes x = batch.get(s.water.x), v = batch.get(s.water.v), way;
   CellKernel<D, Shape> kernel;
-  kernel.find(s.grid, cell, x);
-  const CellWindow<D> window(s.grid, s.water_walls, home);
+  kernel.find(s.grid, batch.places(), x);
+  const BatchWindows<D> windows(s.grid, s.water_walls, batch);
   for_velocities<kWaterSpeeds>(
-      s, window, [&](auto d, const auto& grid) __attribute__((always_inline)) {
+      s, batch, windows, [&](auto d, const auto& grid) __attribute__((always_inline)) {
         const BatchLanes after = new_value<d, D>(kernel, grid);
         v[d] = mix(v[d], old_value<d, D>(kernel, grid), after, pic);
         way[d] = dt * after;
         if constexpr (S::affine) put_gradient<Shape, d, D>(s.grid, batch, kernel, grid, s.water);
       });
-  const std::array<bool, kBatch> falls = falling(s, window, home, kernel);
+  const std::array<bool, kBatch> falls = falling(s, batch, windows, kernel);
   for (int k = 0; k < batch.count; ++k) {
     if (!falls[k]) continue;
     Vec<D> new_v, new_way;
@@ -101,12 +105,12 @@ void water_from_faces(State<D>& s, const Cell<D>& cell, const PointBatch<D>& bat
 
   Lanes middle = x, half;
   for (int d = 0; d < D; ++d) half[d] = 0.5 * way[d];
-  move_batch<D>(s.grid, s.water_walls, home, batch.count, middle, half);
+  move_batch<D>(s.grid, s.water_walls, batch, windows, middle, half);
   CellKernel<D, typename Shape::Mover> mover;
-  mover.find(s.grid, cell, middle);
+  mover.find(s.grid, batch.places(), middle);
   Lanes carried;
   for_velocities<kWaterSpeeds>(
-      s, window, [&](auto d, const auto& grid) __attribute__((always_inline)) {
+      s, batch, windows, [&](auto d, const auto& grid) __attribute__((always_inline)) {
         carried[d] = dt * new_value<d, D>(mover, grid);
       });
   for (int k = 0; k < batch.count; ++k) {
@@ -114,12 +118,12 @@ void water_from_faces(State<D>& s, const Cell<D>& cell, const PointBatch<D>& bat
     for (int d = 0; d < D; ++d) at[d] = middle[d][k];
     if (falls[k]) {
       for (int d = 0; d < D; ++d) carried[d][k] = way[d][k];
-    } else if (s.grid.cell_of(at) != cell) {
+    } else if (s.grid.cell_of(at) != batch.cell[batch.cell_of(k)]) {
       const Vec<D> other = carried_way<Shape, D>(s, at, dt);
       for (int d = 0; d < D; ++d) carried[d][k] = other[d];
     }
   }
-  totals.interventions.clipped_points += move_batch<D>(s.grid, s.water_walls, home, batch.count, x, carried);
+  totals.interventions.clipped_points += move_batch<D>(s.grid, s.water_walls, batch, windows, x, carried);
   batch.put(x, s.water.x);
 }
 

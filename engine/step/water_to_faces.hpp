@@ -31,65 +31,107 @@ QUICKSAND_INLINE std::array<Lanes<8>, 8> weights_of_momentum(const WindowNodes<4
   return transposed({none, own.w[0], none, own.w[1], none, own.w[2], none, own.w[3]});
 }
 
-/// Σ of the batch on the window of component d.
-template <class S, int d, int D, class Kernel>
-QUICKSAND_INLINE WaterRows<D> water_rows(const State<D>& s, const Kernel& kernel, const PointBatch<D>& batch,
-                                         const BatchLanes& mass, const BatchLanes& v) {
-  const auto& other = kernel.center[axis_of(d, 1)];
-  const auto& last = kernel.center[axis_of(d, D - 1)];
-  std::array<BatchLanes, D> turning{};
-  if constexpr (S::affine) turning = turning_of<d, D>(s.water, batch, mass, s.grid.h);
-  const std::array<Lanes<8>, 8> along = water_along<S>(kernel.face[d], mass, mass * v, turning[0]);
-  std::array<Lanes<8>, 8> turned;
-  if constexpr (S::affine) turned = weights_of_momentum(kernel.face[d]);
-  WaterRows<D> rows{};
+/// kg·m/s per cell, of the water; zeros without the affine transfer.
+template <class S, int d, int D>
+QUICKSAND_INLINE std::array<BatchLanes, D> turning_if(const State<D>& s, const PointBatch<D>& batch,
+                                                      const BatchLanes& mass) {
+  if constexpr (S::affine)
+    return turning_of<d, D>(s.water, batch, mass, s.grid.h);
+  else
+    return {};
+}
+
+/// What goes with a batch's points along component d's own axis and across it.
+template <class S, int d, int D>
+struct WaterShare {
+  std::array<BatchLanes, D> turning;      ///< see turning_of; affine transfer only
+  std::array<Lanes<8>, 8> along, turned;  ///< see water_along, weights_of_momentum
+  std::array<BatchLanes, CellWindow<D>::kFaces / 4> weight{},
+      across{};  ///< by rows; kg·m/s, by the arms across
+
+  template <class Kernel>
+  QUICKSAND_INLINE WaterShare(const State<D>& s, const Kernel& kernel, const PointBatch<D>& batch,
+                              const BatchLanes& mass, const BatchLanes& v)
+      : turning(turning_if<S, d>(s, batch, mass)),
+        along(water_along<S>(kernel.face[d], mass, mass * v, turning[0])),
+        turned(S::affine ? weights_of_momentum(kernel.face[d]) : along) {
+    const auto& other = kernel.center[axis_of(d, 1)];
+    const auto& last = kernel.center[axis_of(d, D - 1)];
+    for (int z = 0; z < CellWindow<D>::kLast; ++z)
+      for (int y = 0; y < 3; ++y) {
+        const int r = y + 3 * z;
+        weight[r] = D == 2 ? other.w[y] : other.w[y] * last.w[z];
+        if constexpr (S::affine) {
+          across[r] = turning[1] * other.arm(y);
+          if constexpr (D == 3) across[r] += turning[2] * last.arm(z);
+          across[r] *= weight[r];
+        }
+      }
+  }
+  /// Σ of points `from` to `to` on their cell's window.
+  QUICKSAND_INLINE WaterRows<D> rows(int from, int to) const {
+    WaterRows<D> sum{};
+    for (std::size_t r = 0; r < sum.size(); ++r) {
+      Lanes<8> row{};
+      for (int k = from; k < to; ++k) {
+        row += weight[r][k] * along[k];
+        if constexpr (S::affine) row += across[r][k] * turned[k];
+      }
+      sum[r] = row;
+    }
+    return sum;
+  }
+};
+
+/// Volumes of the points in the three cells of a row, [3] of it unused.
+template <int D>
+using VolumeRows = std::array<Lanes<4>, CellWindow<D>::kCenters / 3>;
+template <int D, class Kernel>
+QUICKSAND_INLINE VolumeRows<D> volume_rows(const Kernel& kernel, const std::array<Lanes<8>, 8>& along,
+                                           int from, int to) {
+  VolumeRows<D> sum{};
   for (int z = 0; z < CellWindow<D>::kLast; ++z)
     for (int y = 0; y < 3; ++y) {
-      Lanes<8>& row = rows[y + 3 * z];
-      const BatchLanes w = D == 2 ? other.w[y] : other.w[y] * last.w[z];
-      for (int k = 0; k < batch.count; ++k) row += w[k] * along[k];
-      if constexpr (S::affine) {
-        BatchLanes across = turning[1] * other.arm(y);
-        if constexpr (D == 3) across += turning[2] * last.arm(z);
-        across *= w;
-        for (int k = 0; k < batch.count; ++k) row += across[k] * turned[k];
-      }
+      const BatchLanes w = D == 2 ? kernel.center[1].w[y] : kernel.center[1].w[y] * kernel.center[D - 1].w[z];
+      Lanes<4> row{};
+      for (int k = from; k < to; ++k) row += w[k] * __builtin_shufflevector(along[k], along[k], 0, 1, 2, 3);
+      sum[y + 3 * z] = row;
     }
-  return rows;
+  return sum;
 }
 
 template <class S, int D>
-void water_to_faces(State<D>& s, const Cell<D>& cell, const PointBatch<D>& batch) {
+void water_to_faces(State<D>& s, const PointBatch<D>& batch) {
   CellKernel<D, typename S::Shape> kernel;
-  kernel.find(s.grid, cell, batch.get(s.water.x));
-  const CellWindow<D> window(s.grid, s.water_walls, s.grid.index(cell));
+  kernel.find(s.grid, batch.places(), batch.get(s.water.x));
+  const BatchWindows<D> windows(s.grid, s.water_walls, batch);
   const BatchLanes mass = batch.only(batch.get(s.water.mass));
   const std::array<BatchLanes, D> v = batch.get(s.water.v);
   for_components<D>([&](auto d) __attribute__((always_inline)) {
-    const WaterRows<D> rows = water_rows<S, d, D>(s, kernel, batch, mass, v[d]);
-    window.faces(
-        d, [&](int node, int face, double sign) __attribute__((always_inline)) {
-          const Lanes<8>& row = rows[node / 4];
-          const int x = 2 * (node % 4);
-          add_lanes<2>(s.sums[d][face].water_mass, Lanes<2>{row[x], sign * row[x + 1]});
-          if (sign < 0) s.image[d][face].water += 2 * row[x];
+    const WaterShare<S, d, D> share(s, kernel, batch, mass, v[d]);
+    windows.each(
+        batch, [&](const auto& window, int from, int to) __attribute__((always_inline)) {
+          const WaterRows<D> rows = share.rows(from, to);
+          window.faces(
+              d, [&](int node, int face, double sign) __attribute__((always_inline)) {
+                const Lanes<8>& row = rows[node / 4];
+                const int x = 2 * (node % 4);
+                add_lanes<2>(s.sums[d][face].water_mass, Lanes<2>{row[x], sign * row[x + 1]});
+                if (sign < 0) s.image[d][face].water += 2 * row[x];
+              });
         });
   });
-  // Volumes of the points in the three cells of a row, [3] of it unused.
-  const auto& across = kernel.center;
+  const auto& own = kernel.center[0];
   const BatchLanes volume = mass / s.constants.water_density, none{};
-  const std::array<Lanes<8>, 8> along = transposed({across[0].w[0] * volume, across[0].w[1] * volume,
-                                                    across[0].w[2] * volume, none, none, none, none, none});
-  std::array<Lanes<4>, CellWindow<D>::kCenters / 3> volumes{};
-  for (int z = 0; z < CellWindow<D>::kLast; ++z)
-    for (int y = 0; y < 3; ++y) {
-      const BatchLanes w = D == 2 ? across[1].w[y] : across[1].w[y] * across[D - 1].w[z];
-      for (int k = 0; k < batch.count; ++k)
-        volumes[y + 3 * z] += w[k] * __builtin_shufflevector(along[k], along[k], 0, 1, 2, 3);
-    }
-  window.centers([&](int node, int to) __attribute__((always_inline)) {
-    s.cell_sums[to].water += volumes[node / 3][node % 3];
-  });
+  const std::array<Lanes<8>, 8> along =
+      transposed({own.w[0] * volume, own.w[1] * volume, own.w[2] * volume, none, none, none, none, none});
+  windows.each(
+      batch, [&](const auto& window, int from, int to) __attribute__((always_inline)) {
+        const VolumeRows<D> volumes = volume_rows<D>(kernel, along, from, to);
+        window.centers([&](int node, int cell) __attribute__((always_inline)) {
+          s.cell_sums[cell].water += volumes[node / 3][node % 3];
+        });
+      });
 }
 
 }  // namespace quicksand

@@ -42,6 +42,8 @@ void parallel(std::size_t n, std::size_t grain, const Part& part) {
   after.follow();
 }
 
+int available() { return tbb::this_task_arena::max_concurrency(); }
+
 void in_arena(int threads, const Part& part) {
   Milestone before, after;
   before.pass();

@@ -16,6 +16,7 @@ struct Part {
 };
 void parallel(std::size_t n, std::size_t grain, const Part& part);
 void in_arena(int threads, const Part& part);
+int available();
 template <class F>
 Part part_of(const F& f) {
   return {&f, [](const void* function, std::size_t begin, std::size_t end) {
@@ -30,6 +31,9 @@ template <class F>
 void parallel_parts(std::size_t n, std::size_t grain, const F& f) {
   if (n > 0) threads::parallel(n, grain, threads::part_of(f));
 }
+
+/// Threads that loops here may run on.
+inline int thread_count() { return threads::available(); }
 
 /// f() with loops inside it on up to `threads` threads, the caller's among them; 0: as many as the machine
 /// has.

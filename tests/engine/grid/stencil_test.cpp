@@ -186,7 +186,9 @@ void expect_lanes_agree(const Walls<D>& walls) {
         x[d][k] = places[k][d] = grid.origin[d] + (cell[d] + xi) * grid.h;
       }
     CellKernel<D, Shape> kernel;
-    kernel.find(grid, cell, x);
+    std::array<BatchLanes, D> cells;
+    for (int d = 0; d < D; ++d) cells[d] = all_lanes<BatchLanes>(cell[d]);
+    kernel.find(grid, cells, x);
     const CellWindow<D> window(grid, walls, grid.index(cell));
     for (int k = 0; k < kBatch; ++k) {
       const PointKernel<D, Shape> alone(grid, places[k]);

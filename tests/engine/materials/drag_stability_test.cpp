@@ -156,5 +156,27 @@ TEST(StepLimit, TableAgreesWithTheAnalysis) {
   }
 }
 
+/// Of a range of porosities it is the smallest bound of any of them, to the distance of the samples.
+TEST(StepLimit, LeastOfARangeIsTheSmallestInIt) {
+  const SoilMaterial material = SoilMaterial::from(test::sand(), {});
+  const double modulus = material.constrained_modulus<2>({}, 0.4);
+  const StepLimit limit(material, 1000, 1 / 2.2e9, kCell);
+  for (const StepLimit::Range range :
+       {StepLimit::Range{0.4, 0.4}, {0.39, 0.402}, {0.0, 1.0}, {0.31, 0.77}, {0.995, 1}}) {
+    double dry = 1e99, saturated = 1e99, fast_wave = 1e99;
+    for (int i = 0; i <= 10000; ++i) {
+      const double n = range.low + (range.high - range.low) * i / 10000;
+      dry = std::min(dry, limit.dry(n, modulus));
+      saturated = std::min(saturated, limit.saturated(n, modulus));
+      fast_wave = std::min(fast_wave, limit.fast_wave(n, modulus));
+    }
+    EXPECT_NEAR(limit.least_dry(range) / dry, 1, 1e-3) << range.low;
+    EXPECT_NEAR(limit.least_saturated(range) / saturated, 1, 1e-3) << range.low;
+    EXPECT_NEAR(limit.least_fast_wave(range) / fast_wave, 1, 1e-3) << range.low;
+    EXPECT_LE(limit.least_saturated(range), saturated * (1 + 1e-12)) << range.low;
+  }
+  EXPECT_TRUE(std::isinf(limit.least_dry({})));
+}
+
 }  // namespace
 }  // namespace quicksand

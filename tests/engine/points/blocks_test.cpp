@@ -2,12 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
 #include <mutex>
 #include <random>
 #include <set>
 
 #include "engine/grid/stencil.hpp"
+#include "engine/step/batches.hpp"
 
 namespace quicksand {
 namespace {
@@ -172,7 +174,10 @@ TEST(Blocks, GroupIsAStableSort) {
   std::vector<char> seen(places.size(), 0);
   for (int b = 0; b < blocks.count(); ++b) {
     PointRange rest = blocks.points(list, b);
-    blocks.cells_with_points(list, b, [&](const Cell<2>& c, const PointRange& points) {
+    for (int k = 0; k < Blocks<2>::kCells; ++k) {
+      const std::size_t at = static_cast<std::size_t>(b) * Blocks<2>::kCells + k;
+      const PointRange points{list.begin[at], list.begin[at + 1]};
+      const Cell<2> c = blocks.cell(b, k);
       EXPECT_EQ(points.begin, rest.begin);  // cell after cell
       rest.begin = points.end;
       EXPECT_EQ(blocks.number_of(blocks.block_of(c)), b);
@@ -185,13 +190,57 @@ TEST(Blocks, GroupIsAStableSort) {
         EXPECT_FALSE(seen[p]);
         seen[p] = 1;
       }
-    });
+    }
     EXPECT_EQ(rest.begin, rest.end);
   }
   blocks.locate(grid, {}, list);
   blocks.group(list);  // an empty set leaves nothing behind
   EXPECT_TRUE(list.order.empty());
   EXPECT_EQ(list.begin.back(), 0u);
+}
+
+/// Sparse and crowded cells: batches go through all points in order, a second cell is in them whole.
+TEST(Blocks, BatchesOfOneOrTwoCellsHoldEveryPointOnce) {
+  const Grid<2> grid = uneven_grid<2>();
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> part(0, 1);
+  std::vector<Vec<2>> places(700);
+  for (auto& p : places) p = {1.3 * std::pow(part(random), 3), 0.9 * part(random)};
+  std::sort(places.begin(), places.end(),
+            [&](const Vec<2>& a, const Vec<2>& b) {  // most, but not all, in a row
+              return a[0] + 0.05 * a[1] < b[0] + 0.05 * b[1];
+            });
+  BlockList list;
+  Blocks<2> blocks = blocks_at<2>(grid, places, list);
+  blocks.group(list);
+  int pairs = 0, crowded = 0;
+  for (int b = 0; b < blocks.count(); ++b) {
+    PointRange rest = blocks.points(list, b);
+    for_batches(blocks, list, b, [&](const PointBatch<2>& batch) {
+      ASSERT_GT(batch.count, 0);
+      if (batch.cells == 2) {
+        const int second = blocks.key_of(batch.cell[1]);
+        EXPECT_EQ(batch.end[1] - batch.end[0], std::count(list.key.begin(), list.key.end(), second));
+      } else if (rest.begin + batch.count < rest.end && batch.count < kBatch) {  // the next one did not fit
+        const int next = list.key[list.order[rest.begin + batch.count]];
+        EXPECT_GT(batch.count + std::count(list.key.begin(), list.key.end(), next), kBatch);
+      }
+      EXPECT_EQ(batch.end[1], batch.count);
+      pairs += batch.cells == 2;
+      crowded += batch.cells == 1 && batch.count == kBatch;
+      bool in_a_row = true;
+      for (int k = 0; k < batch.count; ++k) {
+        EXPECT_EQ(batch.point[k], list.order[rest.begin++]);
+        EXPECT_EQ(grid.cell_of(places[batch.point[k]]), batch.cell[batch.cell_of(k)]);
+        in_a_row = in_a_row && batch.point[k] == batch.point[0] + k;
+        for (int d = 0; d < 2; ++d) EXPECT_EQ(batch.places()[d][k], batch.cell[batch.cell_of(k)][d]);
+      }
+      EXPECT_EQ(batch.in_a_row, in_a_row);
+    });
+    EXPECT_EQ(rest.begin, rest.end);
+  }
+  EXPECT_GT(pairs, 20);
+  EXPECT_GT(crowded, 20);
 }
 
 /// 40 × 40 cells, 10 × 10 blocks.
