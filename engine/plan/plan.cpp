@@ -19,9 +19,10 @@
 namespace quicksand {
 namespace {
 
-/// What a run takes besides its steps, measured on one 2.6 GHz core: opening and closing its file, and each
-/// frame with its compression.
-constexpr double kStartSeconds = 0.045, kFrameSeconds = 2.4e-3, kFramePointSeconds = 1.2e-6;
+/// What a run takes besides its steps, measured on one 2.6 GHz core: opening and closing its file, seeding,
+/// each frame with its compression, and making sure that what was written is on the disk.
+constexpr double kStartSeconds = 0.045, kSeedSeconds = 2.3e-6, kFrameSeconds = 1.0e-3,
+                 kFramePointSeconds = 0.75e-6, kFlushSeconds = 2.4e-3;
 
 /// Steps that end on every sample and frame (Run::until_event): as many as the longer of the two intervals'
 /// parts needs.
@@ -94,9 +95,17 @@ struct Memory {
   double arrays = 0;  ///< points, faces and cells
   double saved = 0;   ///< the last good state; a checkpoint on its way to the disk is another one
   double frame = 0;   ///< see Frame in engine/run/run.hpp
-  /// As many frames as are held until a good state follows them, and the one that is being written.
-  double with_frames(double count) const { return arrays + 2 * saved + (1 + count) * frame; }
+  double chunks = 0;  ///< what the file's library takes to pack a frame
 };
+
+/// Of a run of at least one step, whose frames are `held` until a good state follows them, and so are there
+/// together with its checkpoint, and packed one after the other.
+double peak_memory(const Memory& m, double held, bool has_checkpoints) {
+  return m.arrays + (has_checkpoints ? 2 : 1) * m.saved + (1 + held) * m.frame + (held > 0 ? m.chunks : 0);
+}
+
+/// Points, at most, in a chunk of the result file, and how many copies of their places are made on its way.
+constexpr double kChunkPoints = 65536, kChunkCopies = 4;
 
 /// Of Frame's fields that are asked for.
 double frame_bytes_per_point(const Scene& scene, int stress) {
@@ -111,12 +120,16 @@ double frame_bytes_per_point(const Scene& scene, int stress) {
   return bytes;
 }
 
+/// Steps between two good states (RunOptions::good_every), and s before the first checkpoint.
+constexpr double kGoodEvery = 128, kFirstCheckpoint = 0.25;
+
 /// Frames that wait for a good state, besides the one that is being made: up to three more where they come
-/// closer together than good states do (Run::kHeldFrames, RunOptions::good_every).
-double frames_held(const Scene& scene, double dt) {
-  constexpr double most = 3, steps_between_good_states = 128;
+/// closer together than good states do (Run::kHeldFrames), and no more than the run has after its first.
+double frames_held(const Scene& scene, double dt, double end_time) {
+  constexpr double most = 3;
   const double steps_between_frames = std::max(1.0, scene.output.frame_interval / dt);
-  return std::min(most, std::floor(steps_between_good_states / steps_between_frames));
+  const double others = std::ceil(end_time / scene.output.frame_interval) - 1;
+  return std::clamp(std::floor(kGoodEvery / steps_between_frames), 0.0, std::clamp(others, 0.0, most));
 }
 
 /// State::keeps_flow, as far as it is known before the run.
@@ -142,12 +155,15 @@ Memory measure(const Scene& scene, Plan& plan) {
   const double per_water = affine + 3 * sizeof(Vec<D>) + sizeof(double) + sizeof(int) + 8;
   const double fixed = points.fixed ? D * sizeof(FixedFace) + sizeof(CellSums) : 0;
   const double flow = keeps_flow(scene, plan.has_water) ? sizeof(FaceFlow) : 0;
-  const double per_active_cell = follower + fixed +
-                                 D * (sizeof(FaceSums) + sizeof(FaceImage) + flow + sizeof(FaceSpeeds)) +
-                                 sizeof(CellSums) + sizeof(CellState) + 3 * sizeof(double);
+  // What a step touches. Images lie beside walls only.
+  const bool counts_room = plan.has_water || !scene.output.probes.empty() || !scene.loads.empty();
+  const double wet =
+      (plan.has_water ? double{sizeof(CellState)} : 0) + (counts_room ? double{sizeof(CellSums)} : 0);
+  const double pressures = plan.has_water ? sizeof(double) : 0;
+  const double per_active_cell =
+      follower + fixed + wet + 3 * pressures + D * (sizeof(FaceSums) + flow + sizeof(FaceSpeeds));
   const double kept_per_active_cell =  // of the last good state
-      follower + D * (flow + sizeof(FaceSpeeds) + 1) + sizeof(CellSums) + sizeof(CellState) +
-      2 * sizeof(double);
+      follower + wet + 2 * pressures + D * (flow + sizeof(FaceSpeeds) + 1);
   // Flags of walls, for water and for grains, and volumes about an axis.
   const double per_cell = 2 * (5 * D + 1 + sizeof(int)) + (grid.axial ? (D + 1) * sizeof(double) : 0);
   const double points_bytes = per_soil * static_cast<double>(plan.soil_points + plan.fixed_soil_points) +
@@ -157,7 +173,8 @@ Memory measure(const Scene& scene, Plan& plan) {
   const auto active = static_cast<double>(points.active_cells);
   const auto count = static_cast<double>(plan.soil_points + plan.fixed_soil_points + plan.water_points);
   return {points_bytes + per_active_cell * active + per_wet_cell * wet_cells + per_cell * grid.count(),
-          points_bytes + kept_per_active_cell * active, count * frame_bytes_per_point(scene, kStress<D>)};
+          points_bytes + kept_per_active_cell * active, count * frame_bytes_per_point(scene, kStress<D>),
+          kChunkCopies * std::min(count, kChunkPoints) * 3 * sizeof(double)};
 }
 
 void explain(const Scene& scene, Plan& plan) {
@@ -203,9 +220,11 @@ void add_companions(const Scene& scene, const Calibration& machine, Plan& plan) 
 }  // namespace
 
 double output_seconds(const Scene& scene, const Plan& plan, double end_time) {
-  const double frames = 2 + end_time / scene.output.frame_interval;
+  const double frames = 1 + std::ceil(end_time / scene.output.frame_interval);
+  const double flushes = frames / (1 + frames_held(scene, plan.time_step, end_time));
   const auto points = static_cast<double>(plan.soil_points + plan.fixed_soil_points + plan.water_points);
-  return kStartSeconds + frames * (kFrameSeconds + points * kFramePointSeconds);
+  return kStartSeconds + points * kSeedSeconds + frames * (kFrameSeconds + points * kFramePointSeconds) +
+         flushes * kFlushSeconds;
 }
 
 Plan make_plan(const Scene& scene, const Calibration& machine) {
@@ -237,10 +256,11 @@ Plan make_plan(const Scene& scene, const Calibration& machine) {
     plan.end_time += scene.stages[k].duration;
     plan.steps += steps_between_events(scene, scene.stages[k].duration, bound.seconds);
   }
-  plan.memory_bytes = memory.with_frames(frames_held(scene, plan.time_step));
   plan.seconds =
       machine.seconds(scene, plan.steps, static_cast<double>(plan.soil_points + plan.water_points));
   plan.seconds += output_seconds(scene, plan, plan.end_time);
+  plan.memory_bytes =
+      peak_memory(memory, frames_held(scene, plan.time_step, plan.end_time), plan.seconds > kFirstCheckpoint);
   add_companions(scene, machine, plan);
   plan.kind = error_class(scene);
   plan.expected_error = expected_error(scene);

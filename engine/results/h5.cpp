@@ -42,6 +42,15 @@ Handle string_type(const std::string& text) {
   return type;
 }
 
+/// Chunks that are written once need no cache, which would keep up to 1 MB of each array.
+Handle access_properties(Storage storage) {
+  Handle properties(H5Pcreate(H5P_DATASET_ACCESS), H5Pclose, "cannot make dataset properties");
+  if (storage == Storage::packed)
+    check(H5Pset_chunk_cache(properties.get(), H5D_CHUNK_CACHE_NSLOTS_DEFAULT, 0, H5D_CHUNK_CACHE_W0_DEFAULT),
+          "cannot make dataset properties");
+  return properties;
+}
+
 Handle scalar_space() { return Handle(H5Screate(H5S_SCALAR), H5Sclose, "cannot make a dataspace"); }
 
 Handle row_space(hsize_t rows, hsize_t columns) {
@@ -147,8 +156,9 @@ Handle dataset_properties() {
 Table::Table(hid_t group, const std::string& name, hid_t type, hsize_t columns, hsize_t chunk_rows,
              Storage storage)
     : name_(name), columns_(columns) {
+  const Handle access = access_properties(storage);
   if (exists(group, name)) {
-    dataset_ = Handle(H5Dopen2(group, name.c_str(), H5P_DEFAULT), H5Dclose, "cannot open dataset " + name);
+    dataset_ = Handle(H5Dopen2(group, name.c_str(), access.get()), H5Dclose, "cannot open dataset " + name);
     return;
   }
   const std::string what = "cannot create dataset " + name;
@@ -162,7 +172,7 @@ Table::Table(hid_t group, const std::string& name, hid_t type, hsize_t columns, 
     check(H5Pset_deflate(properties.get(), gzip_level), what);
   }
   dataset_ =
-      Handle(H5Dcreate2(group, name.c_str(), type, space.get(), H5P_DEFAULT, properties.get(), H5P_DEFAULT),
+      Handle(H5Dcreate2(group, name.c_str(), type, space.get(), H5P_DEFAULT, properties.get(), access.get()),
              H5Dclose, what);
 }
 
