@@ -33,6 +33,10 @@ struct ErrorEstimateReport {
   std::string missing;  ///< why there are no figures; empty if there are
 };
 
+/// Two grids may agree by accident. What flows in at one reservoir flows out at others: where the order is
+/// assumed, no inflow counts as nearer to the truth than all of them in the mean square.
+void doubt_accidents(std::vector<FigureError>& figures);
+
 /// Runs the companions of a scene that has been run and compares. Nothing happens, and `missing` says so, if
 /// the run itself did not succeed; a cancelled or failed companion likewise.
 ErrorEstimateReport estimate_error(const Scene& scene, const RunReport& report, const HistorySink& history,

@@ -88,6 +88,27 @@ TEST(ErrorEstimate, ComparesEveryBody) {
   }
 }
 
+/// Of two inflows of which one agrees by accident, that one is told as uncertain as both in the mean;
+/// observed orders and other figures are left alone.
+TEST(ErrorEstimate, DoubtsInflowsThatAgreeByAccident) {
+  const auto figure = [](const char* name, double error, OrderBasis basis) {
+    FigureError f{name, "m³/s", 0, 0, error < 0.5 ? 1.0 : 0.0, {}, {}};
+    f.history = {error, kAssumedOrder, basis};
+    return f;
+  };
+  std::vector<FigureError> figures{
+      figure("reservoir.well.inflow", 0, OrderBasis::assumed),
+      figure("reservoir.far.inflow", 0.1, OrderBasis::assumed),
+      figure("reservoir.side.inflow", 0.001, OrderBasis::observed),
+      figure("probe.reservoir.inflow", 0.02, OrderBasis::assumed),
+      figure("reservoir.shut.inflow", 0.5, OrderBasis::assumed),  // nothing ever flows
+  };
+  doubt_accidents(figures);
+  const double expected[] = {std::sqrt(0.005), 0.1, 0.001, 0.02, 0.5};
+  for (std::size_t k = 0; k < figures.size(); ++k)
+    EXPECT_NEAR(figures[k].history.error, expected[k], 1e-15) << figures[k].name;
+}
+
 TEST(ErrorEstimate, IsMissingAfterAFailure) {
   RunReport report;
   report.status = RunStatus::failed;
