@@ -187,7 +187,7 @@ void post_validate(Service& service, const Call& call, httplib::Response& respon
                           {},
                           {},
                           max_trial_s}};
-    trial = make_trial(planned.scene, service.machine, seconds);
+    trial = make_trial(planned.scene, service.machine, seconds, [&] { return service.stopping.load(); });
     foretell(*trial, planned.scene, service.machine, planned.plan);
   }
   response.set_content(estimate_json(call.request.body, planned.plan, service.machine, trial),

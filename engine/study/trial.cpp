@@ -24,7 +24,8 @@ double cpu_seconds() {
 
 class TrialMonitor final : public RunMonitor {
  public:
-  TrialMonitor(Trial& trial, double longest) : trial_(trial), longest_(longest) {}
+  TrialMonitor(Trial& trial, double longest, const std::function<bool()>& stopped)
+      : trial_(trial), longest_(longest), stopped_(stopped) {}
   void situation(std::size_t stage, double time, const StepSituation& now) override {
     if (trial_.moments.empty()) first_ = cpu_seconds();
     auto& moments = trial_.moments;
@@ -33,7 +34,7 @@ class TrialMonitor final : public RunMonitor {
     last_ = cpu_seconds();
     ++steps_;
   }
-  bool cancelled() override { return cpu_seconds() - created_ > longest_; }
+  bool cancelled() override { return cpu_seconds() - created_ > longest_ || (stopped_ && stopped_()); }
   /// s, of a step; the last one is not counted.
   double per_step() const { return steps_ > 1 ? (last_ - first_) / static_cast<double>(steps_ - 1) : 0; }
   double seconds() const { return cpu_seconds() - created_; }
@@ -41,6 +42,7 @@ class TrialMonitor final : public RunMonitor {
  private:
   Trial& trial_;
   double longest_, created_ = cpu_seconds(), first_ = 0, last_ = 0;
+  const std::function<bool()>& stopped_;
   long steps_ = 0;
 };
 
@@ -141,14 +143,15 @@ Walk walk(const Trial& trial, const Scene& scene, double cells, double limits) {
 
 }  // namespace
 
-Trial make_trial(const Scene& scene, const Calibration& machine, double budget) {
+Trial make_trial(const Scene& scene, const Calibration& machine, double budget,
+                 const std::function<bool()>& stopped) {
   Trial trial;
   const auto choice = on_larger_cells(scene, machine, budget);
   if (!choice) {
     trial.missing = "no larger cells fit the scene and take at most " + std::to_string(budget) + " s";
     return trial;
   }
-  TrialMonitor monitor(trial, 2 * budget);
+  TrialMonitor monitor(trial, 2 * budget, stopped);
   HistorySink nowhere;
   const RunReport report = run(choice->scene, nowhere, monitor, {1});
   if (report.status == RunStatus::failed || trial.moments.empty()) {

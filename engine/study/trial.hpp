@@ -2,6 +2,7 @@
 // What a run will take where nothing but a run can tell: flows that speed up, ground that stiffens, stages
 // that end at rest.
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -31,8 +32,10 @@ struct Trial {
 };
 
 /// Runs it on one core, on the smallest cells twice as large and more for which it should take at most
-/// `budget` seconds; on others when none of these fit the walls. Stopped after twice that time.
-Trial make_trial(const Scene& scene, const Calibration& machine, double budget);
+/// `budget` seconds; on others when none of these fit the walls. Stopped after twice that time, or when
+/// `stopped` says so.
+Trial make_trial(const Scene& scene, const Calibration& machine, double budget,
+                 const std::function<bool()>& stopped = {});
 
 /// Replaces steps and seconds of the plan of a scene that differs from the trial's in its numerics only:
 /// walks through the steps that it would choose, were its state at each time that of the trial.

@@ -243,6 +243,40 @@ TEST(Blocks, BatchesOfOneOrTwoCellsHoldEveryPointOnce) {
   EXPECT_GT(crowded, 20);
 }
 
+/// What is got of points is what they hold, and what is put reaches them alone: in a row or not, few or many.
+template <std::size_t n>
+void expect_batches_get_and_put() {
+  std::vector<std::uint32_t> in_a_row(20), scattered(20);
+  for (std::uint32_t k = 0; k < 20; ++k) in_a_row[k] = k, scattered[k] = k < 10 ? 2 * k : 2 * k - 19;
+  for (const auto& order : {in_a_row, scattered})
+    for (int count = 1; count <= kBatch; ++count) {
+      std::vector<std::array<double, n>> vectors(20), put(20);
+      std::vector<double> numbers(20), put_numbers(20);
+      for (std::size_t p = 0; p < 20; ++p) {
+        numbers[p] = 1 + static_cast<double>(p);
+        for (std::size_t i = 0; i < n; ++i) vectors[p][i] = 100 * numbers[p] + static_cast<double>(i);
+      }
+      PointBatch<2> batch;
+      batch.count = batch.end[0] = batch.end[1] = count;
+      batch.fill(&order[3]);
+      EXPECT_EQ(batch.in_a_row, count == 1 || order == in_a_row);
+      batch.put(batch.get(vectors), put);
+      batch.put(batch.get(numbers), put_numbers);
+      for (std::size_t k = 0; k < 20; ++k) {
+        const std::uint32_t p = order[k];
+        const bool is_in = k >= 3 && k < 3 + static_cast<std::size_t>(count);
+        EXPECT_EQ(put[p], is_in ? vectors[p] : (std::array<double, n>{})) << k << " of " << count;
+        EXPECT_EQ(put_numbers[p], is_in ? numbers[p] : 0) << k << " of " << count;
+      }
+    }
+}
+TEST(Blocks, BatchesGetAndPutWhatPointsHold) {
+  expect_batches_get_and_put<2>();
+  expect_batches_get_and_put<3>();
+  expect_batches_get_and_put<4>();
+  expect_batches_get_and_put<6>();
+}
+
 /// 40 × 40 cells, 10 × 10 blocks.
 const Grid<2> kSquare({0, 0}, {40, 40}, 1);
 

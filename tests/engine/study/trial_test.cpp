@@ -84,6 +84,14 @@ TEST(Trial, StoppedEarlyTellsByWhatItHasSeen) {
   EXPECT_LE(trial.figures.seconds, 1);
 }
 
+TEST(Trial, StopsWhenItIsTold) {
+  int asked = 0;
+  const Trial trial = make_trial(collapse(), {}, 10, [&] { return ++asked > 3; });
+  EXPECT_EQ(trial.missing, "");
+  EXPECT_EQ(trial.figures.steps, 3);
+  EXPECT_LT(trial.figures.fraction, 1);
+}
+
 TEST(Trial, IsMissingWhereNothingIsShortEnough) {
   const Plan plan = foretold(collapse(), 1e-6);
   EXPECT_FALSE(plan.trial);
