@@ -77,13 +77,13 @@ Sample time_steps(Scene scene, double point_steps) {
 
 }  // namespace
 
-Calibration calibrate() {
+Calibration calibrate(double effort) {
   Calibration calibration;
   for (std::size_t k = 0; k < kSceneKinds; ++k) {
     const SceneKind kind = static_cast<SceneKind>(k);
     const bool space = kind >= SceneKind::soil_space;
-    const Sample small = time_steps(bed(kind, space ? 4 : 6), 1e5),
-                 large = time_steps(bed(kind, space ? 12 : 60), 6e5);
+    const Sample small = time_steps(bed(kind, space ? 4 : 6), effort * 1e5),
+                 large = time_steps(bed(kind, space ? 12 : 60), effort * 6e5);
     StepCost& cost = calibration.cost[k];
     cost.point = std::max(1e-9, (large.per_step - small.per_step) / (large.points - small.points));
     cost.step = std::max(1e-7, small.per_step - cost.point * small.points);

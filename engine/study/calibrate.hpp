@@ -3,7 +3,7 @@
 
 namespace quicksand {
 
-/// Runs two sizes of a small scene of each kind on one thread; a few seconds.
-Calibration calibrate();
+/// Runs two sizes of a small scene of each kind on one thread; a few seconds × `effort`.
+Calibration calibrate(double effort = 1);
 
 }  // namespace quicksand
