@@ -156,6 +156,7 @@ Memory measure(const Scene& scene, Plan& plan) {
   const double fixed = points.fixed ? D * sizeof(FixedFace) + sizeof(CellSums) : 0;
   const double flow = keeps_flow(scene, plan.has_water) ? sizeof(FaceFlow) : 0;
   // What a step touches. Images lie beside walls only.
+  // State::counts_room.
   const bool counts_room = plan.has_water || !scene.output.probes.empty() || !scene.loads.empty();
   const double wet =
       (plan.has_water ? double{sizeof(CellState)} : 0) + (counts_room ? double{sizeof(CellSums)} : 0);

@@ -1,11 +1,10 @@
 #include "engine/study/tradeoff.hpp"
 
-#include <time.h>
-
 #include <algorithm>
 #include <chrono>
 
 #include "engine/plan/plan.hpp"
+#include "engine/study/cpu_time.hpp"
 
 namespace quicksand {
 namespace {
@@ -17,13 +16,6 @@ constexpr int kRepeats = 5;
 constexpr double kRepeatShare = 0.02;
 /// Part of a rung's estimated time that has to be left of the budget for it to be started.
 constexpr double kWorthStarting = 0.7;
-
-/// Of the calling thread if it does all the work: beside it others may run in the same process.
-double cpu_seconds(int threads) {
-  timespec now{};
-  clock_gettime(threads == 1 ? CLOCK_THREAD_CPUTIME_ID : CLOCK_PROCESS_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 /// Passes a rung's progress on as that of the ladder, and stops it when the budget is spent.
 class RungMonitor final : public RunMonitor {

@@ -1,7 +1,5 @@
 #include "engine/study/trial.hpp"
 
-#include <time.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -10,17 +8,11 @@
 #include "engine/run/event_times.hpp"
 #include "engine/run/run.hpp"
 #include "engine/scene/check.hpp"
+#include "engine/study/cpu_time.hpp"
 #include "engine/study/history.hpp"
 
 namespace quicksand {
 namespace {
-
-/// Of this thread, which does all the work of a run with one thread.
-double cpu_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 class TrialMonitor final : public RunMonitor {
  public:
