@@ -132,13 +132,16 @@ double frames_held(const Scene& scene, double dt, double end_time) {
   return std::clamp(std::floor(kGoodEvery / steps_between_frames), 0.0, std::clamp(others, 0.0, most));
 }
 
-/// State::keeps_flow, as far as it is known before the run.
-bool keeps_flow(const Scene& scene, bool water) {
-  const auto damps = [](const Stage& stage) { return stage.damping > 0; };
-  const auto is_plate = [](const Load& load) { return load.kind != Load::Kind::traction; };
-  return water || std::any_of(scene.stages.begin(), scene.stages.end(), damps) ||
-         std::any_of(scene.loads.begin(), scene.loads.end(), is_plate);
+bool damps(const Scene& scene) {
+  return std::any_of(scene.stages.begin(), scene.stages.end(),
+                     [](const Stage& stage) { return stage.damping > 0; });
 }
+/// State::keeps_flow and keeps_rest, as far as they are known before the run.
+bool keeps_flow(const Scene& scene, bool water) {
+  const auto is_plate = [](const Load& load) { return load.kind != Load::Kind::traction; };
+  return water || damps(scene) || std::any_of(scene.loads.begin(), scene.loads.end(), is_plate);
+}
+bool keeps_rest(const Scene& scene, bool holds_soil) { return holds_soil || damps(scene); }
 
 template <int D>
 Memory measure(const Scene& scene, Plan& plan) {
@@ -154,6 +157,7 @@ Memory measure(const Scene& scene, Plan& plan) {
       affine + 3 * sizeof(Vec<D>) + sizeof(Stress<D>) + 3 * sizeof(double) + 2 * sizeof(int) + 8;
   const double per_water = affine + 3 * sizeof(Vec<D>) + sizeof(double) + sizeof(int) + 8;
   const double fixed = points.fixed ? D * sizeof(FixedFace) + sizeof(CellSums) : 0;
+  const double rest = keeps_rest(scene, points.fixed > 0) ? sizeof(FaceRest) : 0;
   const double flow = keeps_flow(scene, plan.has_water) ? sizeof(FaceFlow) : 0;
   // What a step touches. Images lie beside walls only.
   // State::counts_room.
@@ -162,7 +166,7 @@ Memory measure(const Scene& scene, Plan& plan) {
       (plan.has_water ? double{sizeof(CellState)} : 0) + (counts_room ? double{sizeof(CellSums)} : 0);
   const double pressures = plan.has_water ? sizeof(double) : 0;
   const double per_active_cell =
-      follower + fixed + wet + 3 * pressures + D * (sizeof(FaceSums) + flow + sizeof(FaceSpeeds));
+      follower + fixed + wet + 3 * pressures + D * (sizeof(FaceSums) + flow + rest + sizeof(FaceSpeeds));
   const double kept_per_active_cell =  // of the last good state
       follower + wet + 2 * pressures + D * (flow + sizeof(FaceSpeeds) + 1);
   // Flags of walls, for water and for grains, and volumes about an axis.

@@ -176,6 +176,7 @@ State<D> make_state(const Scene& scene) {
     s.sums[d] = Field<FaceSums>(s.grid.count());
     s.image[d] = Field<FaceImage>(s.grid.count());
     s.flow[d] = Field<FaceFlow>(s.grid.count());
+    s.rest[d] = Field<FaceRest>(s.grid.count());
     s.speeds[d] = Field<FaceSpeeds>(s.grid.count());
     if (s.constants.kernel == Kernel::linear) s.follower[d] = Field<Follower>(s.grid.count());
   }

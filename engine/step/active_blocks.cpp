@@ -43,6 +43,7 @@ void activate_blocks(State<D>& s) {
   s.blocks.locate(s.grid, s.water.x, s.water_blocks);
   s.blocks.locate(s.grid, marker_places(s), markers);
   for (const int block : s.blocks.activate({&s.soil_blocks, &s.water_blocks, &markers})) forget(s, block);
+  s.plain.assign(s.blocks.count(), 0);
   s.blocks.group(s.soil_blocks);
   s.blocks.group(s.water_blocks);
 }
@@ -51,6 +52,7 @@ template <int D>
 void adopt_blocks(State<D>& s, std::vector<int> places) {
   for (const int block : s.blocks.active()) forget(s, block);
   s.blocks.adopt(std::move(places));
+  s.plain.assign(s.blocks.count(), 0);
 }
 
 template void adopt_blocks<2>(State<2>&, std::vector<int>);

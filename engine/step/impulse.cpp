@@ -7,6 +7,7 @@
 // fixed grains, of contact, of the mirrors, and the shear of the water on no-slip walls.
 
 #include "engine/step/phases.hpp"
+#include "engine/step/plain_faces.hpp"
 #include "engine/step/scheme.hpp"
 
 namespace quicksand {
@@ -27,8 +28,9 @@ double soil_reaction(const State<D>& s, int d, int face, double dt) {
   if constexpr (!P::water) return mirrored + dt * sums.soil_force;
   const FaceFlow& f = s.flow[d][face];
   double gradient = gradient_on_grains(s, d, face);
-  if (f.pushed != f.phi)
-    gradient += (f.pushed / f.phi - 1) * (gradient - s.constants.water_density * s.constants.gravity[d]);
+  if (s.fixed.size() && f.phi > 0)
+    gradient += (s.rest[d][face].pushed / f.phi - 1) *
+                (gradient - s.constants.water_density * s.constants.gravity[d]);
   return mirrored + dt * (sums.soil_force - sums.grains * gradient);
 }
 
@@ -44,7 +46,8 @@ double water_reaction(const State<D>& s, int d, int face, double dt) {
            s.constants.inertia * sums.water_mass * (v.water - v.water_old - dt * s.constants.fall(d));
   if (f.wet > 1) return mirrored;  // carried along by the surface
   const double rho = s.constants.water_density, pressure = f.wet ? felt_gradient(s, d, face) : 0;
-  return mirrored + dt * sums.water_mass * (f.viscous - (pressure + f.fixed_drag * v.water / f.n) / rho);
+  const double fixed = s.fixed.size() ? s.rest[d][face].fixed_drag * v.water / f.n : 0;
+  return mirrored + dt * sums.water_mass * (f.viscous - (pressure + fixed) / rho);
 }
 
 /// Drops above the last wet face move with the water below them instead of falling through it.
@@ -76,10 +79,12 @@ void add_damping(const State<D>& s, int d, int face, Damped<D>& sum) {
   const FaceSums& sums = s.sums[d][face];
   const FaceFlow& f = s.flow[d][face];
   const FaceSpeeds& v = s.speeds[d][face];
+  const FaceRest& rest = s.rest[d][face];
   const bool stopped = s.soil_walls.closed(d, face) && v.soil == 0;
-  if (!stopped) add_damping(d, s.constants.inertia * sums.soil_mass, f.soil_inertia, v.soil_old, v.soil, sum);
+  if (!stopped)
+    add_damping(d, s.constants.inertia * sums.soil_mass, rest.soil_inertia, v.soil_old, v.soil, sum);
   if (f.wet < 2)
-    add_damping(d, s.constants.inertia * sums.water_mass, f.water_inertia, v.water_old, v.water, sum);
+    add_damping(d, s.constants.inertia * sums.water_mass, rest.water_inertia, v.water_old, v.water, sum);
 }
 
 /// The leader's sums hold a follower's mass as if it had the leader's old velocity.
@@ -119,6 +124,28 @@ void add_face(const State<D>& s, int d, int face, double dt, Sum<D>& sum) {
   sum.grid[d] += (sums.soil_mass - image.soil) * v.soil_old + (sums.water_mass - image.water) * v.water_old;
 }
 
+/// The same for a plain block: what the pressure does, and the stress, where there is nothing else.
+template <class P, int D>
+void add_plain(const State<D>& s, int block, double dt, Sum<D>& sum) {
+  const Field<double>& pressure = felt_pressure(s);
+  const double rho = s.constants.water_density, per_density = 1 / rho;
+  const double least = kMassCutoff * rho * s.volume.uniform;
+  for_face_rows(s, block, [&](const FaceRows& rows, int d) {
+    double reaction = 0, grid = 0;
+    for (int k = 0; k < 8; ++k) {
+      const int face = rows.face(k);
+      const FaceSums& sums = s.sums[d][face];
+      const FaceSpeeds& v = s.speeds[d][face];
+      const double g = P::water ? inner_gradient(s, pressure, d, face) : 0;
+      if (P::soil && sums.soil_mass > least) reaction += sums.soil_force - sums.grains * g;
+      if (P::water) reaction += sums.water_mass * (s.flow[d][face].viscous - g * per_density);
+      grid += sums.soil_mass * v.soil_old + sums.water_mass * v.water_old;
+    }
+    sum.reaction[d] += dt * reaction;
+    sum.grid[d] += grid;
+  });
+}
+
 }  // namespace
 
 template <int D>
@@ -126,6 +153,10 @@ Supports<D> support_impulses(const State<D>& s, double dt, double pic) {
   Sum<D> sum = with_phases(s, [&](auto phases) {
     return s.blocks.template sum<Sum<D>>([&](int b) {
       Sum<D> part;
+      if (s.plain[b] && s.constants.kernel != Kernel::linear) {
+        add_plain<decltype(phases)>(s, b, dt, part);
+        return part;
+      }
       s.blocks.cells(s.grid, b, true, [&](int face, const Cell<D>&) {
         for (int d = 0; d < D; ++d) add_face<decltype(phases)>(s, d, face, dt, part);
       });

@@ -49,6 +49,9 @@ void measure_fixed(State<D>& s);
 /// Water surface, room and volume drift → `cell`.
 template <int D>
 void find_surface(State<D>& s);
+/// Blocks whose faces are worked out several at a time → `plain`.
+template <int D>
+void find_plain_blocks(State<D>& s);
 /// Provisional velocities with drag inside, responses to a pressure gradient → `flow`.
 template <int D>
 void predict_velocities(State<D>& s, double dt);
@@ -170,7 +173,8 @@ double felt_gradient(const State<D>& s, int d, int face) {
 template <int D>
 double gradient_on_grains(const State<D>& s, int d, int face) {
   const FaceFlow& f = s.flow[d][face];
-  if (f.soaked > 0) return f.soaked * felt_gradient(s, d, f.soaked_by);
+  if (f.soaked_side)
+    return s.rest[d][face].soaked * felt_gradient(s, d, face + f.soaked_side * s.grid.stride[d]);
   return feels_pressure(s, d, face) ? felt_gradient(s, d, face) : 0;
 }
 
@@ -193,6 +197,8 @@ inline constexpr double kMinRoom = 0.02;
 inline constexpr double kMaxPorosity = 0.999;
 /// Faces with less than this part of a full face's mass carry no velocity of their own.
 inline constexpr double kMassCutoff = 1e-10;
+/// Smallest wet part of a face next to a wet cell; a flat surface gives more than 1/6.
+inline constexpr double kLeastWetPart = 0.1;
 
 /// A cell has pressure where the water surface lies at least this far (cells) above its centre: one that just
 /// touches the centre would make a stiff row and flicker by rounding. Below, the surface lies a little beyond

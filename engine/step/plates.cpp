@@ -42,8 +42,11 @@ void hold_row(State<D>& s, const Plate<D>& plate) {
     FaceFlow& f = s.flow[kAlong][face];
     s.speeds[kAlong][face].soil = s.speeds[kAlong][face].water = plate.speed;
     f.soil_response = f.water_response = 0;
-    f.exchange = f.exchange_response = f.fixed_drag = f.viscous = 0;
-    f.soil_inertia = f.water_inertia = 1;  // what a plate holds moves as the plate does, undamped
+    f.exchange = f.exchange_response = f.viscous = 0;
+    if (!s.keeps_rest()) continue;
+    FaceRest& rest = s.rest[kAlong][face];
+    rest.fixed_drag = 0;
+    rest.soil_inertia = rest.water_inertia = 1;  // what a plate holds moves as the plate does, undamped
   }
 }
 

@@ -59,26 +59,31 @@ struct alignas(32) FaceSpeeds {
 };
 
 /// What a face's velocities follow from: how they answer to a pressure gradient G, v = v̂ − response·G, and
-/// what is between the phases. Kept only where State::keeps_flow.
-struct FaceFlow {
+/// what is between the phases. Kept only where State::keeps_flow. Of 64 bytes: most of a step's traffic on
+/// faces is with these.
+struct alignas(64) FaceFlow {
   double soil_response = 0, water_response = 0;  ///< m/s per Pa/m
   double phi = 0, n = 1;                         ///< –, moving grains; room for water
-  double pushed = 0;     ///< –, of the grains, by what the gradient is beyond still water's
-  std::uint8_t wet = 0;  ///< 1: a side has pressure; 2, 3: extrapolated from such
-  /// –, part of the soil of a face just above the water surface that lies below it, as far as kernels reach:
-  /// it shares the pressure gradient of the face at the surface, `soaked_by`.
-  double soaked = 0;
-  int soaked_by = 0;
-
   /// N·s/m³, impulse of the drag on the grains in this step, and how it answers to G. Worked out with the
   /// velocities: from their difference, what a drag of 10¹⁵ N·s/m⁴ does could not be told.
   double exchange = 0, exchange_response = 0;
-  double fixed_drag = 0;                       ///< N·s/m⁴ on the water, of grains that do not move
-  double viscous = 0;                          ///< N/kg, force of the viscosity on the water
-  double soil_inertia = 1, water_inertia = 1;  ///< –, what damping multiplies inertia by in this step
+  double viscous = 0;           ///< N/kg, force of the viscosity on the water
+  std::uint8_t wet = 0;         ///< 1: a side has pressure; 2, 3: extrapolated from such
+  std::int8_t soaked_side = 0;  ///< ±1: the next face along the component that side soaks it, see FaceRest
 
   double flux(const FaceSpeeds& v) const { return phi * v.soil + n * v.water; }  ///< m/s
   double flux_response() const { return phi * soil_response + n * water_response; }
+};
+
+/// What only some scenes and some faces need beside FaceFlow, within a step. As it was, untouched in memory,
+/// where neither fixed grains, damping nor FaceFlow::soaked_side ask for it.
+struct FaceRest {
+  double pushed = 0;  ///< –, of the grains, by what the gradient is beyond still water's; with fixed grains
+  double fixed_drag = 0;                       ///< N·s/m⁴ on the water, of grains that do not move
+  double soil_inertia = 1, water_inertia = 1;  ///< –, what damping multiplies inertia by in this step
+  /// –, part of the soil of a face just above the water surface that lies below it, as far as kernels reach:
+  /// it shares the pressure gradient of the face at the surface.
+  double soaked = 0;
 };
 
 struct CellSums {
@@ -236,12 +241,17 @@ struct State {
   bool has_soil = false;   ///< there are grains, moving or fixed
   /// Grains alone need only their velocities, unless damping or plates ask for more.
   bool keeps_flow() const { return has_water || constants.damping > 0 || !plates.empty(); }
+  /// Whether `rest` is kept for every face.
+  bool keeps_rest() const { return fixed.size() > 0 || constants.damping > 0; }
   bool counts_room = true;  ///< what soil takes of cells is asked for: by water, plates or samples
   SoilPoints<D> soil;       ///< moving grains
   SoilPoints<D> fixed;      ///< grains held in place
   WaterPoints<D> water;
   std::vector<char> removed;  ///< per body, whether a stage took it away; empty while none did
   BlockList soil_blocks, water_blocks;
+  /// Per active block, 1 if no wall, plate or port is among what its faces have to do with, and all of that
+  /// is wet if there is water at all; engine/step/plain_faces.hpp. 0 until they are looked for.
+  std::vector<std::uint8_t> plain;
   KernelVolumes<D> volume;
   std::vector<SurfaceLoad<D>> loads;
   std::vector<Plate<D>> plates;
@@ -262,6 +272,7 @@ struct State {
   std::array<Field<Follower>, D> follower;  ///< linear kernel only
   std::array<Field<FaceSpeeds>, D> speeds;
   std::array<Field<FaceFlow>, D> flow;
+  std::array<Field<FaceRest>, D> rest;
   std::array<Field<FixedFace>, D> fixed_face;
   Field<CellSums> cell_sums;
   Field<CellSums> fixed_cell;

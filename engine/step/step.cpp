@@ -13,14 +13,14 @@ template <int D>
 bool travels_too_far(const State<D>& s, double dt) {
   const double limit = kMaxTravel * s.grid.h / dt;
   return s.blocks.template sum<long>([&](int b) {
-    long far = 0;
+    double fastest = 0;
     s.blocks.cells(s.grid, b, true, [&](int face, const Cell<D>&) {
       for (int d = 0; d < D; ++d) {
         const FaceSpeeds& v = s.speeds[d][face];
-        far += std::abs(v.soil) > limit || std::abs(v.water) > limit;
+        fastest = std::max({fastest, std::abs(v.soil), std::abs(v.water)});
       }
     });
-    return far;
+    return fastest > limit;
   }) > 0;
 }
 
@@ -96,6 +96,7 @@ StepReport<D> advance(State<D>& s, double dt) {
   points_to_faces(s);   // masses, momenta, forces on the faces
   clock.lap(Phase::to_grid);
   find_surface(s);  // which cells have pressure, where it is zero
+  find_plain_blocks(s);
   clock.lap(Phase::surface);
   report.dt = solve_velocities(s, dt, report.pressure, clock);
   report.finite = report.dt > 0;

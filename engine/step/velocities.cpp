@@ -3,6 +3,7 @@
 
 #include "engine/step/damping.hpp"
 #include "engine/step/phases.hpp"
+#include "engine/step/plain_faces.hpp"
 #include "engine/step/scheme.hpp"
 
 namespace quicksand {
@@ -26,9 +27,6 @@ double pressure_gradient(const State<D>& s, const Field<double>& inner, int d, i
 
 namespace {
 
-/// Smallest wet part of a face next to a wet cell; a flat surface gives more than 1/6.
-constexpr double kLeastWetPart = 0.1;
-
 /// Momentum balance of one face, per unit volume, before the pressure gradient.
 struct Balance {
   double soil_mass = 0, soil_momentum = 0;  ///< kg/m³, × inertia; incl. dt × forces
@@ -39,7 +37,7 @@ struct Balance {
 };
 
 /// All of a face while it is worked out.
-struct FaceTrial : FaceFlow, FaceSpeeds {
+struct FaceTrial : FaceFlow, FaceRest, FaceSpeeds {
   double slip = 0, slip_response = 0;  ///< of the water past the grains, as the velocities
 };
 
@@ -152,7 +150,7 @@ double wet_part(const State<D>& s, int d, int face) {
 /// below the surface feels the pressure as that face does. Without it a saturated layer drains 1/48 of a cell
 /// above its top. Returns the part of the face's volume that soil and water take; 0 for other faces.
 template <int D>
-double soak(const State<D>& s, int d, int face, FaceFlow& f) {
+double soak(const State<D>& s, int d, int face, FaceTrial& f) {
   const int step = s.grid.stride[d];
   for (const int side : {-1, 1}) {
     const int next = face + side * step, wet_cell = side < 0 ? face - 2 * step : next;
@@ -160,7 +158,7 @@ double soak(const State<D>& s, int d, int face, FaceFlow& f) {
     const Taken t = taken(s, d, face);
     if (t.bulk <= 0 || t.fill <= 0) return 0;
     f.soaked = std::min(1.0, t.fill / t.bulk);
-    f.soaked_by = next;
+    f.soaked_side = static_cast<std::int8_t>(side);
     return std::max(t.fill, t.bulk);
   }
   return 0;
@@ -243,6 +241,7 @@ FaceTrial predicted(State<D>& s, int d, int face, double dt) {
   const bool moving_soil = soil && !held;
   if (s.constants.damping > 0) {
     s.flow[d][face] = f;  // for the gradient that the grains feel
+    s.rest[d][face] = f;
     damp(s, d, face, dt, moving_soil, b, f);
   }
   solve(b, dt, moving_soil, f);
@@ -256,14 +255,20 @@ FaceTrial predicted(State<D>& s, int d, int face, double dt) {
 
 template <int D>
 void predict_velocities(State<D>& s, double dt) {
-  const bool keeps_flow = s.keeps_flow();
+  const bool keeps_flow = s.keeps_flow(), keeps_rest = s.keeps_rest();
   with_phases(s, [&](auto phases) {
+    using P = decltype(phases);
     s.blocks.all([&](int b) {
+      if (s.plain[b]) {
+        predict_plain<P>(s, b, dt);
+        return;
+      }
       s.blocks.cells(s.grid, b, true, [&](int face, const Cell<D>&) {
         for (int d = 0; d < D; ++d) {
-          const FaceTrial f = predicted<decltype(phases)>(s, d, face, dt);
+          const FaceTrial f = predicted<P>(s, d, face, dt);
           s.speeds[d][face] = f;
           if (keeps_flow) s.flow[d][face] = f;
+          if (keeps_rest || f.soaked_side) s.rest[d][face] = f;
         }
       });
     });
@@ -277,6 +282,10 @@ void correct_velocities(State<D>& s) {
   with_phases(s, [&](auto phases) {
     using P = decltype(phases);
     s.blocks.all([&](int b) {
+      if (s.plain[b]) {
+        correct_plain<P>(s, b);
+        return;
+      }
       s.blocks.cells(s.grid, b, true, [&](int face, const Cell<D>&) {
         for (int d = 0; d < D; ++d) {
           FaceSpeeds& v = s.speeds[d][face];
@@ -284,7 +293,7 @@ void correct_velocities(State<D>& s) {
             FaceFlow& f = s.flow[d][face];
             const double g = gradient_on_grains(s, d, face);
             if (!f.wet && may_be_extended(s, d, face)) beyond[b] = 1;
-            if (f.wet || f.soaked > 0) v.water -= f.water_response * g;
+            if (f.wet || f.soaked_side) v.water -= f.water_response * g;
             if constexpr (P::soil) {
               v.soil -= f.soil_response * g;
               f.exchange -= f.exchange_response * g;

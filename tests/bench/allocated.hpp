@@ -54,7 +54,7 @@ Allocated allocated(const State<D>& s) {
       {"water points", bytes_of_points(s.water)},
       {"order", bytes_of_all(s.soil_blocks.order, s.soil_blocks.begin, s.soil_blocks.key,
                              s.water_blocks.order, s.water_blocks.begin, s.water_blocks.key)},
-      {"faces", bytes_of_all(s.sums, s.image, s.follower, s.flow, s.speeds, s.fixed_face, s.port_of)},
+      {"faces", bytes_of_all(s.sums, s.image, s.follower, s.flow, s.rest, s.speeds, s.fixed_face, s.port_of)},
       {"cells",
        bytes_of_all(s.cell_sums, s.fixed_cell, s.cell, s.pressure, s.pressure_old, s.pressure_before)},
       {"pressure system", bytes_of_all(m.cell, m.diagonal, m.rhs, m.solution, m.upper, m.lower, m.coupling)},

@@ -68,7 +68,7 @@ TEST(Field, TakesMemoryWhereItIsTouched) {
 #endif
   constexpr std::size_t kMany = 200'000'000;
   const double before = resident();
-  Field<FaceFlow> field(kMany);  // 22 GB
+  Field<FaceFlow> field(kMany);  // 13 GB
   field[0].phi = 1, field[kMany / 2].exchange_response = 2, field[kMany - 1].n = 3;
   EXPECT_LT(resident() - before, 1e6);
   EXPECT_EQ(field[kMany / 2].exchange_response, 2);

@@ -1,0 +1,181 @@
+#pragma once
+// Faces of the common kind, several at a time. No wall, plate, port or water surface is in reach of a plain
+// block (State::plain), so that nothing has to be asked of its faces one by one. The same equations face by
+// face are in velocities.cpp, viscosity.cpp and impulse.cpp.
+
+#include "engine/grid/lanes.hpp"
+#include "engine/step/phases.hpp"
+
+namespace quicksand {
+
+/// Eight faces of one component: two rows of four along x, by the index of the first of each.
+struct FaceRows {
+  int first, second;
+  int face(int k) const { return k < 4 ? first + k : second + k - 4; }
+  FaceRows moved(int by) const { return {first + by, second + by}; }
+};
+
+/// f(rows, d) for the faces of a plain block.
+template <int D, class F>
+QUICKSAND_INLINE void for_face_rows(const State<D>& s, int block, F&& f) {
+  static_assert(Blocks<D>::kEdge == 4);
+  const int low = s.grid.index(s.blocks.cell(block, 0));
+  for (int z = 0; z < (D == 3 ? 4 : 1); ++z)
+    for (int y = 0; y < 4; y += 2) {
+      const int first = low + y * s.grid.stride[1] + (D == 3 ? z * s.grid.stride[D - 1] : 0);
+      for (int d = 0; d < D; ++d) f(FaceRows{first, first + s.grid.stride[1]}, d);
+    }
+}
+
+/// FaceSums of eight faces, member by member.
+struct SumsInLanes {
+  BatchLanes soil_mass, grains, soil_bulk, soil_momentum, soil_force, resistivity, water_mass, water_momentum;
+
+  QUICKSAND_INLINE SumsInLanes(const Field<FaceSums>& sums, const FaceRows& rows) {
+    std::array<BatchLanes, 8> in;
+    for (int k = 0; k < 8; ++k) in[k] = lanes_from<8>(sums[rows.face(k)].soil_mass);
+    const std::array<BatchLanes, 8> out = transposed(in);
+    soil_mass = out[0], grains = out[1], soil_bulk = out[2], soil_momentum = out[3];
+    soil_force = out[4], resistivity = out[5], water_mass = out[6], water_momentum = out[7];
+  }
+};
+
+/// To eight faces, members of FaceSpeeds in their order.
+QUICKSAND_INLINE void put_speeds(Field<FaceSpeeds>& speeds, const FaceRows& rows,
+                                 const std::array<BatchLanes, 4>& v) {
+  const BatchLanes none{};
+  const std::array<BatchLanes, 8> by_face = transposed({v[0], v[1], v[2], v[3], none, none, none, none});
+  for (int k = 0; k < 8; ++k)
+    put_lanes<4>(speeds[rows.face(k)].soil_old, __builtin_shufflevector(by_face[k], by_face[k], 0, 1, 2, 3));
+}
+
+/// viscous_acceleration, m/s².
+template <int D>
+QUICKSAND_INLINE BatchLanes viscous_in_lanes(const State<D>& s, int d, const FaceRows& rows,
+                                             const BatchLanes& mass, const BatchLanes& v) {
+  const double least = kMassCutoff * s.constants.water_density * s.volume.uniform;
+  const BatchLanes none{}, one = all_lanes<BatchLanes>(1), per_mass = 1 / mass;
+  BatchLanes sum{};
+  for (int axis = 0; axis < D; ++axis)
+    for (const int side : {-1, 1}) {
+      const SumsInLanes other(s.sums[d], rows.moved(side * s.grid.stride[axis]));
+      const BatchLanes part = other.water_mass * per_mass;
+      const BatchLanes difference = other.water_momentum / other.water_mass - v;
+      sum += where(other.water_mass > least, where(part < one, part, one) * difference, none);
+    }
+  return s.constants.viscosity / s.constants.water_density * s.grid.inverse_h * s.grid.inverse_h * sum;
+}
+
+/// predict_velocities of eight faces of grains alone.
+template <int D>
+QUICKSAND_INLINE void predict_dry(State<D>& s, int d, const FaceRows& rows, double dt) {
+  const double least = kMassCutoff * s.constants.water_density * s.volume.uniform;
+  const SumsInLanes sums(s.sums[d], rows);
+  const BatchLanes none{}, per_mass = 1 / sums.soil_mass;
+  const auto soil = sums.soil_mass > least;
+  const BatchLanes old = where(soil, sums.soil_momentum * per_mass, none);
+  const BatchLanes change = dt * (s.constants.fall(d) + sums.soil_force * per_mass / s.constants.inertia);
+  put_speeds(s.speeds[d], rows, {old, where(soil, old + change, none), none, none});
+}
+
+/// predict_velocities of eight faces with water: [FMS19] eqs. (1) and (2) with the drag inside.
+template <class P, int D>
+QUICKSAND_INLINE void predict_wet(State<D>& s, int d, const FaceRows& rows, double dt) {
+  const double rho = s.constants.water_density, inertia = s.constants.inertia, fall = s.constants.fall(d);
+  const double per_volume = 1 / s.volume.uniform, least = kMassCutoff * rho * s.volume.uniform;
+  const SumsInLanes sums(s.sums[d], rows);
+  const BatchLanes none{}, one = all_lanes<BatchLanes>(1);
+  const auto water = sums.water_mass > least, soil = sums.soil_mass > least;
+  const BatchLanes phi = P::soil ? sums.grains * per_volume : none;
+  const BatchLanes room = one - phi, least_room = all_lanes<BatchLanes>(kMinRoom);
+  const BatchLanes n = where(room > least_room, room, least_room);
+
+  const BatchLanes water_old = where(water, sums.water_momentum / sums.water_mass, none);
+  BatchLanes viscous{};
+  if (s.constants.viscosity > 0)
+    viscous = where(water, viscous_in_lanes(s, d, rows, sums.water_mass, water_old), none);
+  const BatchLanes water_mass = inertia * rho * n;
+  const BatchLanes water_momentum = water_mass * (water_old + dt * (fall + viscous / inertia));
+
+  BatchLanes soil_old{}, soil_v{}, soil_response{}, exchange{}, exchange_response{};
+  BatchLanes water_v, water_response;
+  if constexpr (P::soil) {
+    soil_old = where(soil, sums.soil_momentum / sums.soil_mass, none);
+    const BatchLanes soil_mass = where(soil, inertia * per_volume * sums.soil_mass, none);
+    const BatchLanes soil_momentum =
+        where(soil, soil_mass * (soil_old + dt * fall) + dt * per_volume * sums.soil_force, none);
+    const BatchLanes share = sums.water_mass * per_volume / (n * rho),
+                     least_share = all_lanes<BatchLanes>(kLeastWetPart);
+    const BatchLanes water_drag = where(soil, dt * per_volume * n * n * sums.resistivity, none) /
+                                  where(share > least_share, share, least_share);
+    const BatchLanes drag = share * water_drag;
+    // The determinant without its products of two drags; see solve_pair.
+    const BatchLanes a22 = water_mass + water_drag, determinant = soil_mass * a22 + drag * water_mass;
+    const BatchLanes inverse = 1 / where(soil, determinant, water_mass), per_gradient = dt * inverse;
+    const BatchLanes a11 = soil_mass + drag;
+    soil_v = (a22 * soil_momentum + drag * water_momentum) * inverse;
+    soil_response = (a22 * phi + drag * n) * per_gradient;
+    water_v = where(soil, a11 * water_momentum + water_drag * soil_momentum, water_momentum) * inverse;
+    water_response = where(soil, a11 * n + water_drag * phi, n) * per_gradient;
+    soil_response = where(soil, soil_response, none);
+    exchange = drag * (soil_mass * water_momentum - water_mass * soil_momentum) * inverse;
+    exchange_response = drag * (soil_mass * n - water_mass * phi) * per_gradient;
+  } else {
+    const BatchLanes inverse = 1 / water_mass;
+    water_v = water_momentum * inverse;
+    water_response = dt * n * inverse;
+  }
+
+  put_speeds(s.speeds[d], rows, {soil_old, soil_v, water_old, water_v});
+  const std::array<BatchLanes, 8> flow =
+      transposed({soil_response, water_response, phi, n, exchange, exchange_response, viscous, none});
+  for (int k = 0; k < 8; ++k) {
+    const int face = rows.face(k);
+    put_lanes<8>(s.flow[d][face].soil_response, flow[k]);
+    s.flow[d][face].wet = 1;
+  }
+}
+
+template <class P, int D>
+void predict_plain(State<D>& s, int block, double dt) {
+  for_face_rows(
+      s, block, [&](const FaceRows& rows, int d) __attribute__((always_inline)) {
+        if constexpr (P::water)
+          predict_wet<P>(s, d, rows, dt);
+        else
+          predict_dry(s, d, rows, dt);
+      });
+}
+
+/// The gradient between two wet cells, Pa/m.
+template <int D>
+double inner_gradient(const State<D>& s, const Field<double>& pressure, int d, int face) {
+  return (pressure[face] - pressure[face - s.grid.stride[d]]) * s.grid.inverse_h;
+}
+/// That which a step's velocities feel.
+template <int D>
+const Field<double>& felt_pressure(const State<D>& s) {
+  return s.constants.explicit_pressure ? s.pressure_old : s.pressure;
+}
+
+/// correct_velocities of a block.
+template <class P, int D>
+void correct_plain(State<D>& s, int block) {
+  if constexpr (!P::water) return;
+  const Field<double>& pressure = felt_pressure(s);
+  for_face_rows(s, block, [&](const FaceRows& rows, int d) {
+    for (int k = 0; k < 8; ++k) {
+      const int face = rows.face(k);
+      const double g = inner_gradient(s, pressure, d, face);
+      FaceFlow& f = s.flow[d][face];
+      FaceSpeeds& v = s.speeds[d][face];
+      v.water -= f.water_response * g;
+      if constexpr (P::soil) {
+        v.soil -= f.soil_response * g;
+        f.exchange -= f.exchange_response * g;
+      }
+    }
+  });
+}
+
+}  // namespace quicksand
