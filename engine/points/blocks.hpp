@@ -138,6 +138,11 @@ class Blocks {
     return c;
   }
 
+  /// Whether the active block before this one is its neighbour along x.
+  bool beside(int number) const {
+    return active_[number] == active_[number - 1] + 1 && active_[number] % blocks_[0] != 0;
+  }
+
   /// Active blocks. From here on a block is its number among them, in the order of their places.
   int count() const { return static_cast<int>(active_.size()); }
   /// Number of an active block, from its place; −1 if it is not active.

@@ -2,27 +2,55 @@
 
 #include <cmath>
 
+#include "engine/grid/lanes.hpp"
 #include "engine/threads/chunks.hpp"
 
 namespace quicksand {
 namespace {
 
-/// Largest magnitude; not a number if one is.
-template <class F>
-double largest(std::size_t n, F&& f) {
-  const auto larger = [](double a, double b) { return b > a || std::isnan(b) ? b : a; };
-  const auto part = [&](std::size_t begin, std::size_t end) {
-    double m = 0;
-    for (std::size_t i = begin; i < end; ++i) m = larger(m, std::abs(f(i)));
-    return m;
-  };
-  return reduce_chunks(n, 0.0, part, larger);
+/// Largest magnitude of many numbers, several at a time; not a number if one is.
+class Largest {
+ public:
+  QUICKSAND_INLINE void add(const BatchLanes& v) {
+    const BatchLanes size = where(v < 0, -v, v);
+    most_ = where(size > most_, size, most_);
+    sick_ += v - v;  // 0, or not a number
+  }
+  double of(double v) const {
+    double most = std::abs(v);
+    for (int k = 0; k < kBatch; ++k) most = larger(most, sick_[k] == 0 ? most_[k] : sick_[k]);
+    return most;
+  }
+  static double larger(double a, double b) { return b > a || std::isnan(b) ? b : a; }
+
+ private:
+  BatchLanes most_{}, sick_{};
+};
+
+/// f(i) → kBatch numbers from i on, one(i) → number i.
+template <class F, class One>
+double largest(std::size_t n, F&& f, One&& one) {
+  return reduce_chunks(
+      n, 0.0,
+      [&](std::size_t begin, std::size_t end) {
+        Largest most;
+        double rest = 0;
+        std::size_t i = begin;
+        for (; i + kBatch <= end; i += kBatch) most.add(f(i));
+        for (; i < end; ++i) rest = Largest::larger(rest, std::abs(one(i)));
+        return most.of(rest);
+      },
+      Largest::larger);
 }
 
 double dot(std::size_t n, const std::vector<double>& a, const std::vector<double>& b) {
   const auto part = [&](std::size_t begin, std::size_t end) {
+    BatchLanes sums{};
     double sum = 0;
-    for (std::size_t i = begin; i < end; ++i) sum += a[i] * b[i];
+    std::size_t i = begin;
+    for (; i + kBatch <= end; i += kBatch) sums += lanes_from<kBatch>(a[i]) * lanes_from<kBatch>(b[i]);
+    for (; i < end; ++i) sum += a[i] * b[i];
+    for (int k = 0; k < kBatch; ++k) sum += sums[k];
     return sum;
   };
   return reduce_chunks(n, 0.0, part, [](double x, double y) { return x + y; });
@@ -46,11 +74,9 @@ constexpr double kRounding = 1e-15;
 template <int D>
 void multiply(const PressureSystem<D>& m, const std::vector<double>& x, std::vector<double>& y) {
   for (std::size_t r = 0; r < m.cell.size(); ++r) {
-    double t = m.diagonal[r] * x[r];
-    for (int d = 0; d < D; ++d) {
-      if (const int j = m.upper[d][r]; j >= 0) t += m.coupling[d][r] * x[j];
-      if (const int j = m.lower[d][r]; j >= 0) t += m.coupling[d][j] * x[j];
-    }
+    double t = m.matrix.diagonal[r] * x[r];
+    for (int k = 0; k < 2 * D; ++k)
+      if (const int j = m.neighbor[k][r]; j >= 0) t -= m.matrix.coupling[k][r] * x[j];
     y[r] = t;
   }
   add_pistons(m, x, y);
@@ -62,38 +88,47 @@ PressureReport conjugate_gradients(const Grid<D>& grid, PressureSystem<D>& m, Mu
   constexpr int kMaxIterations = 2000;
   const std::size_t rows = m.cell.size();
   PressureReport report{static_cast<int>(rows)};
-  std::vector<double>&x = m.work.x, &r = m.work.residual, &z = m.work.preconditioned;
+  std::vector<double>&x = m.solution, &r = m.work.residual, &z = m.work.preconditioned;
   std::vector<double>&direction = m.work.direction, &image = m.work.image;
-  for (std::vector<double>* v : {&x, &r, &z, &direction, &image}) v->resize(rows + 1), v->back() = 0;
-  std::copy(m.solution.begin(), m.solution.end(), x.begin());
+  for (std::vector<double>* v : {&r, &z, &direction, &image}) v->resize(rows);
   multigrid.build(grid, m);
   const auto times = [&](const std::vector<double>& in, std::vector<double>& out) {
     multigrid.multiply(in, out);
     add_pistons(m, in, out);
   };
   times(x, image);
+  const auto magnitude = [&](const std::vector<double>& v) {
+    return largest(
+        rows, [&](std::size_t i) { return lanes_from<kBatch>(v[i]); }, [&](std::size_t i) { return v[i]; });
+  };
+  const std::vector<double>& diagonal = m.matrix.diagonal;
+  const double term = largest(
+      rows, [&](std::size_t i) { return lanes_from<kBatch>(diagonal[i]) * lanes_from<kBatch>(x[i]); },
+      [&](std::size_t i) { return diagonal[i] * x[i]; });
+  const double scale = magnitude(m.rhs);
+  const double target = tolerance * scale + kRounding * term;
   for_chunks(rows, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) r[i] = m.rhs[i] - image[i];
   });
-  const double scale = largest(rows, [&](std::size_t i) { return m.rhs[i]; });
-  const double term = largest(rows, [&](std::size_t i) { return m.diagonal[i] * m.solution[i]; });
-  const double target = tolerance * scale + kRounding * term;
-  const auto residual_of = [&] { return largest(rows, [&](std::size_t i) { return r[i]; }); };
-  double residual = residual_of();
-  const auto go = [&](double alpha) {
-    for_chunks(rows, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        x[i] += alpha * direction[i];
-        r[i] -= alpha * image[i];
-      }
-    });
-    residual = residual_of();
+  double residual = magnitude(r);
+  const auto go = [&](const std::vector<double>& along, double alpha) {
+    residual = largest(
+        rows,
+        [&](std::size_t i) {
+          put_lanes<kBatch>(x[i], lanes_from<kBatch>(x[i]) + alpha * lanes_from<kBatch>(along[i]));
+          const BatchLanes left = lanes_from<kBatch>(r[i]) - alpha * lanes_from<kBatch>(image[i]);
+          put_lanes<kBatch>(r[i], left);
+          return left;
+        },
+        [&](std::size_t i) {
+          x[i] += alpha * along[i];
+          return r[i] -= alpha * image[i];
+        });
   };
   if (residual > target && !m.change.empty()) {
-    std::copy(m.change.begin(), m.change.end(), direction.begin());
-    times(direction, image);
-    const double energy = dot(rows, direction, image);
-    if (energy > 0) go(dot(rows, direction, r) / energy);
+    times(m.change, image);
+    const double energy = dot(rows, m.change, image);
+    if (energy > 0) go(m.change, dot(rows, m.change, r) / energy);
   }
   double rz = 0;
   while (residual > target && report.iterations < kMaxIterations) {
@@ -104,10 +139,9 @@ PressureReport conjugate_gradients(const Grid<D>& grid, PressureSystem<D>& m, Mu
       for (std::size_t i = begin; i < end; ++i) direction[i] = turn == 0 ? z[i] : z[i] + turn * direction[i];
     });
     times(direction, image);
-    go(rz / dot(rows, direction, image));
+    go(direction, rz / dot(rows, direction, image));
     ++report.iterations;
   }
-  std::copy(x.begin(), x.end() - 1, m.solution.begin());
   report.residual = scale > 0 ? residual / scale : 0;
   report.converged = residual <= target;
   return report;

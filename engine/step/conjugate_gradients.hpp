@@ -11,7 +11,7 @@ struct PressureReport {
   bool converged = true;
 };
 
-/// y = A x, pistons included; x may be one longer than the rows.
+/// y = A x, pistons included.
 template <int D>
 void multiply(const PressureSystem<D>& m, const std::vector<double>& x, std::vector<double>& y);
 

@@ -10,155 +10,246 @@ namespace {
 /// Levels are added until one has at most this many rows, which a few sweeps solve.
 constexpr std::size_t kFewRows = 16;
 constexpr int kLastSweeps = 4;
+/// Rows of a run at most, so that threads find parts of it.
+constexpr int kLongestRun = 1024;
+
+/// Σ over the sides of coupling × x of the neighbour, for row `row` of a run.
+template <int sides>
+struct Sides {
+  std::array<const double*, sides> coupling, x;
+
+  template <class Matrix, class Run>
+  Sides(const Matrix& matrix, const Run& run, const double* vector) {
+    for (int k = 0; k < sides; ++k) {
+      coupling[k] = matrix.coupling[k].data() + run.first;
+      x[k] = vector + run.neighbor[k];
+    }
+  }
+  double sum(int row) const {
+    double t = 0;
+    for (int k = 0; k < sides; ++k) t += coupling[k][row] * x[k][row];
+    return t;
+  }
+};
 
 }  // namespace
 
 template <int D>
-void Multigrid<D>::finish_level(Level& level) {
-  const std::size_t n = level.rows.size();
-  level.x.assign(n + 1, 0);
-  level.b.assign(n, 0);
-  for (auto& rows : level.colored) rows.clear();
-  for (std::size_t r = 0; r < n; ++r) {
-    int parity = 0;
-    for (const int c : level.place[r]) parity ^= c & 1;
-    level.colored[parity].push_back(static_cast<int>(r));
+void Multigrid<D>::find_runs(Level& level, const Neighbors& neighbor) {
+  const int n = static_cast<int>(level.rows());
+  for (const int color : {0, 1}) {
+    std::vector<Run>& runs = level.runs[color];
+    runs.clear(), level.parts[color] = {0};
+    int in_part = 0;
+    for (int r = color ? level.even : 0, end = color ? n : level.even; r < end; ++r) {
+      const auto goes_on = [&](const Run& run) {
+        if (run.count == kLongestRun) return false;
+        for (int k = 0; k < kSides; ++k) {
+          const bool none = run.neighbor[k] == run.first;
+          if (neighbor[k][r] != (none ? -1 : run.neighbor[k] + run.count)) return false;
+        }
+        return true;
+      };
+      if (in_part >= static_cast<int>(kChunk)) {
+        level.parts[color].push_back(static_cast<int>(runs.size()));
+        in_part = 0;
+      }
+      if (in_part == 0 || !goes_on(runs.back())) {
+        runs.push_back({r, 0, {}});
+        for (int k = 0; k < kSides; ++k) runs.back().neighbor[k] = neighbor[k][r] < 0 ? r : neighbor[k][r];
+      }
+      ++runs.back().count, ++in_part;
+    }
+    level.parts[color].push_back(static_cast<int>(runs.size()));
   }
+}
+
+/// f(run) for the runs of a colour.
+template <int D>
+template <class F>
+void Multigrid<D>::for_runs(const Level& level, int color, F&& f) {
+  const std::vector<int>& parts = level.parts[color];
+  const auto some = [&](std::size_t begin, std::size_t end) {
+    for (int i = parts[begin]; i < parts[end]; ++i) f(level.runs[color][i]);
+  };
+  if (parts.size() < 4)
+    some(0, parts.size() - 1);
+  else
+    parallel_parts(parts.size() - 1, 1, some);
 }
 
 template <int D>
 void Multigrid<D>::build_structure(const Grid<D>& grid, const PressureSystem<D>& m) {
-  cells_ = m.cell;
+  cells_ = m.cell, neighbors_ = m.neighbor;
+  std::vector<Cell<D>> place;
+  for (const int cell : m.cell) place.push_back(grid.cell(cell));
   levels_.assign(1, {});
-  Level& fine = levels_[0];
-  const int n = static_cast<int>(m.cell.size());
-  fine.rows.resize(n);
-  for (const int cell : m.cell) fine.place.push_back(grid.cell(cell));
-  finish_level(fine);
-  while (levels_.back().rows.size() > kFewRows) {
+  const auto make_vectors = [](Level& level, std::size_t rows, int even) {
+    level.even = even;
+    for (auto* v : {&level.inverse, &level.x, &level.b}) v->assign(rows, 0);
+    level.left.assign(even, 0);
+  };
+  make_vectors(levels_[0], m.cell.size(), m.even);
+  find_runs(levels_[0], m.neighbor);
+  while (levels_.back().rows() > kFewRows) {
     Level coarse;
-    coarsen(levels_.back(), coarse);
-    finish_level(coarse);
-    const bool stuck = coarse.rows.size() == levels_.back().rows.size();
+    const Neighbors neighbor = coarsen(levels_.back(), coarse, place);
+    make_vectors(coarse, place.size(), coarse.even);
+    find_runs(coarse, neighbor);
+    const bool stuck = coarse.rows() == levels_.back().rows();
     if (stuck) break;
     levels_.push_back(std::move(coarse));
   }
 }
 
-/// Rows of the cubes that hold rows of `fine`, in the order of their first.
+/// Rows of the cubes that hold rows of `fine`; `place`, of the rows of `fine`, becomes that of the cubes.
 template <int D>
-void Multigrid<D>::coarsen(Level& fine, Level& coarse) {
-  Cell<D> low = fine.place[0], high = low;
-  for (const Cell<D>& c : fine.place)
+typename Multigrid<D>::Neighbors Multigrid<D>::coarsen(Level& fine, Level& coarse,
+                                                       std::vector<Cell<D>>& place) {
+  Cell<D> low = place[0], high = low, size, step;
+  for (const Cell<D>& c : place)
     for (int d = 0; d < D; ++d) low[d] = std::min(low[d], c[d] >> 1), high[d] = std::max(high[d], c[d] >> 1);
-  std::size_t size = 1;
-  for (int d = 0; d < D; ++d) size *= high[d] - low[d] + 1;
+  std::size_t slots = 1;
+  for (int d = 0; d < D; ++d) {
+    size[d] = high[d] - low[d] + 1;
+    step[d] = static_cast<int>(slots);
+    slots *= size[d];
+  }
   const auto slot = [&](const Cell<D>& c) {
-    std::size_t i = 0;
-    for (int d = D - 1; d >= 0; --d) i = i * (high[d] - low[d] + 1) + (c[d] - low[d]);
+    int i = 0;
+    for (int d = 0; d < D; ++d) i += ((c[d] >> 1) - low[d]) * step[d];
     return i;
   };
-  std::vector<int> row_at(size, -1);
-  fine.parent.resize(fine.rows.size());
-  for (std::size_t r = 0; r < fine.rows.size(); ++r) {
-    Cell<D> c;
-    int child = 0;
-    for (int d = 0; d < D; ++d) c[d] = fine.place[r][d] >> 1, child |= (fine.place[r][d] & 1) << d;
-    int& row = row_at[slot(c)];
-    if (row < 0) {
-      row = static_cast<int>(coarse.place.size());
-      coarse.place.push_back(c);
-      coarse.children.push_back({});
-      coarse.children.back().fill(-1);
+  std::vector<int> row_at(slots, -1);
+  for (const Cell<D>& c : place) row_at[slot(c)] = 0;
+  std::vector<Cell<D>> cubes;
+  std::vector<int> at;  // slots
+  for (const int color : {0, 1}) {
+    for (std::size_t first = 0; first < slots; first += size[0]) {
+      Cell<D> c = low;
+      for (std::size_t d = 1, rest = first / size[0]; d < D; rest /= size[d], ++d)
+        c[d] += static_cast<int>(rest % size[d]);
+      int parity = 0;
+      for (const int i : c) parity ^= i & 1;
+      for (int x = parity ^ color; x < size[0]; x += 2) {
+        if (row_at[first + x] < 0) continue;
+        at.push_back(static_cast<int>(first) + x);
+        c[0] = low[0] + x;
+        cubes.push_back(c);
+      }
     }
+    if (color == 0) coarse.even = static_cast<int>(cubes.size());
+  }
+  const int n = static_cast<int>(cubes.size());
+  for (int r = 0; r < n; ++r) row_at[at[r]] = r;
+  coarse.children.resize(n);
+  for (auto& of : coarse.children) of.fill(-1);
+  fine.parent.resize(place.size());
+  for (std::size_t r = 0; r < place.size(); ++r) {
+    int child = 0;
+    for (int d = 0; d < D; ++d) child |= (place[r][d] & 1) << d;
+    const int row = row_at[slot(place[r])];
     coarse.children[row][child] = static_cast<int>(r);
     fine.parent[r] = row;
   }
-  const int n = static_cast<int>(coarse.place.size());
-  coarse.rows.resize(n);
-  for (int r = 0; r < n; ++r)
-    for (int d = 0; d < D; ++d)
-      for (const int side : {0, 1}) {
-        Cell<D> c = coarse.place[r];
-        c[d] += 2 * side - 1;
-        const bool inside = c[d] >= low[d] && c[d] <= high[d];
-        const int other = inside ? row_at[slot(c)] : -1;
-        coarse.rows[r].neighbor[2 * d + side] = other >= 0 ? other : n;
-      }
+  coarse.own.resize(n);
+  Neighbors neighbor;
+  for (int k = 0; k < kSides; ++k) {
+    neighbor[k].resize(n);
+    const int d = k / 2, edge = k % 2 ? high[d] : low[d], by = k % 2 ? step[d] : -step[d];
+    for (int r = 0; r < n; ++r) neighbor[k][r] = cubes[r][d] == edge ? -1 : row_at[at[r] + by];
+  }
+  place = std::move(cubes);
+  return neighbor;
 }
 
 template <int D>
 void Multigrid<D>::fill_coarse(const Level& fine, Level& coarse) {
-  for_chunks(coarse.rows.size(), [&](std::size_t begin, std::size_t end) {
+  const Stencil<D>& from = *fine.matrix;
+  for_chunks(coarse.rows(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t r = begin; r < end; ++r) {
-      Row& row = coarse.rows[r];
-      row.beta.fill(0);
+      std::array<double, kSides> beta{};
       double own = 0;  // storage and surface
-      for (const int child : coarse.children[r]) {
+      for (int number = 0; number < kChildren; ++number) {
+        const int child = coarse.children[r][number];
         if (child < 0) continue;
-        const Row& f = fine.rows[child];
-        own += f.diagonal;
+        own += from.diagonal[child];
         for (int k = 0; k < kSides; ++k) {
-          own -= f.beta[k];
-          const bool outward = (fine.place[child][k / 2] & 1) == (k & 1);
-          if (outward) row.beta[k] += 0.5 * f.beta[k];
+          own -= from.coupling[k][child];
+          const bool outward = ((number >> (k / 2)) & 1) == (k & 1);
+          if (outward) beta[k] += 0.5 * from.coupling[k][child];
         }
       }
-      row.diagonal = std::max(own, 0.0);
-      for (const double beta : row.beta) row.diagonal += beta;
-      row.inverse = row.diagonal > 0 ? 1 / row.diagonal : 0;
+      double diagonal = std::max(own, 0.0);
+      for (int k = 0; k < kSides; ++k) diagonal += coarse.own.coupling[k][r] = beta[k];
+      coarse.own.diagonal[r] = diagonal;
+      coarse.inverse[r] = diagonal > 0 ? 1 / diagonal : 0;
     }
   });
 }
 
 template <int D>
 void Multigrid<D>::build(const Grid<D>& grid, const PressureSystem<D>& m) {
-  if (levels_.empty() || m.cell != cells_) build_structure(grid, m);
+  if (levels_.empty() || m.cell != cells_ || m.neighbor != neighbors_) build_structure(grid, m);
   Level& fine = levels_[0];
-  const int none = static_cast<int>(fine.rows.size());
-  for_chunks(fine.rows.size(), [&](std::size_t begin, std::size_t end) {
-    for (std::size_t r = begin; r < end; ++r) {
-      Row& row = fine.rows[r];
-      row.diagonal = m.diagonal[r];
-      row.inverse = 1 / m.diagonal[r];
-      for (int d = 0; d < D; ++d) {  // gates part and join the same cells
-        const int lower = m.lower[d][r], upper = m.upper[d][r];
-        row.neighbor[2 * d] = lower >= 0 ? lower : none;
-        row.neighbor[2 * d + 1] = upper >= 0 ? upper : none;
-        row.beta[2 * d] = lower >= 0 ? -m.coupling[d][lower] : 0;
-        row.beta[2 * d + 1] = -m.coupling[d][r];
-      }
-    }
+  fine.matrix = &m.matrix;
+  for_chunks(fine.rows(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t r = begin; r < end; ++r) fine.inverse[r] = 1 / m.matrix.diagonal[r];
   });
-  for (std::size_t k = 1; k < levels_.size(); ++k) fill_coarse(levels_[k - 1], levels_[k]);
+  for (std::size_t k = 1; k < levels_.size(); ++k) {
+    levels_[k].matrix = &levels_[k].own;
+    fill_coarse(levels_[k - 1], levels_[k]);
+  }
 }
 
 template <int D>
 void Multigrid<D>::multiply(const std::vector<double>& x, std::vector<double>& y) const {
   const Level& fine = levels_[0];
-  const std::size_t n = fine.rows.size();
-  for_chunks(n, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t r = begin; r < end; ++r) {
-      const Row& row = fine.rows[r];
-      double t = row.diagonal * x[r];
-      for (int k = 0; k < kSides; ++k) t -= row.beta[k] * x[row.neighbor[k]];
-      y[r] = t;
-    }
+  for (const int color : {0, 1})
+    for_runs(fine, color, [&](const Run& run) {
+      const Sides<kSides> sides(*fine.matrix, run, x.data());
+      const double *diagonal = fine.matrix->diagonal.data() + run.first, *own = x.data() + run.first;
+      double* __restrict out = y.data() + run.first;
+      for (int i = 0; i < run.count; ++i) out[i] = diagonal[i] * own[i] - sides.sum(i);
+    });
+}
+
+/// Sets the rows of a colour to what their neighbours ask for.
+template <int D>
+void Multigrid<D>::relax(Level& level, int color) {
+  for_runs(level, color, [&](const Run& run) {
+    const Sides<kSides> sides(*level.matrix, run, level.x.data());
+    const double *b = level.b.data() + run.first, *inverse = level.inverse.data() + run.first;
+    double* x = level.x.data() + run.first;
+#pragma GCC ivdep  // neighbours are of the other colour, or the row itself times 0
+    for (int i = 0; i < run.count; ++i) x[i] = (b[i] + sides.sum(i)) * inverse[i];
   });
 }
 
-/// Sets the rows of a colour to what their neighbours ask for. `from_zero`: these are still zero.
+/// relax of the even rows where all x are zero still.
 template <int D>
-void Multigrid<D>::relax(Level& level, int color, bool from_zero) {
-  const std::vector<int>& rows = level.colored[color];
-  for_chunks(rows.size(), [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const int r = rows[i];
-      const Row& row = level.rows[r];
-      double t = level.b[r];
-      if (!from_zero)
-        for (int k = 0; k < kSides; ++k) t += row.beta[k] * level.x[row.neighbor[k]];
-      level.x[r] = t * row.inverse;
+void Multigrid<D>::start(Level& level) {
+  for_chunks(level.even, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t r = begin; r < end; ++r) level.x[r] = level.b[r] * level.inverse[r];
+  });
+  std::fill(level.x.begin() + level.even, level.x.end(), 0);
+}
+
+/// What start and relax of the odd rows leave over: of even rows what came from these since, of odd ones
+/// nothing.
+template <int D>
+void Multigrid<D>::restrict_to(Level& coarse, Level& fine) {
+  for_runs(fine, 0, [&](const Run& run) {
+    const Sides<kSides> sides(*fine.matrix, run, fine.x.data());
+    double* __restrict left = fine.left.data() + run.first;
+    for (int i = 0; i < run.count; ++i) left[i] = sides.sum(i);
+  });
+  for_chunks(coarse.rows(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t r = begin; r < end; ++r) {
+      double sum = 0;
+      for (const int child : coarse.children[r])
+        if (child >= 0 && child < fine.even) sum += fine.left[child];
+      coarse.b[r] = sum;
     }
   });
 }
@@ -166,41 +257,26 @@ void Multigrid<D>::relax(Level& level, int color, bool from_zero) {
 template <int D>
 void Multigrid<D>::cycle(std::size_t k) {
   Level& level = levels_[k];
+  start(level);
+  relax(level, 1);
   if (k + 1 == levels_.size()) {
-    std::fill(level.x.begin(), level.x.end(), 0);
-    for (int i = 0; i < kLastSweeps; ++i) relax(level, 0, false), relax(level, 1, false);
-    for (int i = 0; i < kLastSweeps; ++i) relax(level, 1, false), relax(level, 0, false);
+    for (int i = 1; i < kLastSweeps; ++i) relax(level, 0), relax(level, 1);
+    for (int i = 0; i < kLastSweeps; ++i) relax(level, 1), relax(level, 0);
     return;
   }
-  relax(level, 0, true), relax(level, 1, false);
   Level& coarse = levels_[k + 1];
-  // Of the colour relaxed last nothing is left over.
-  for_chunks(coarse.rows.size(), [&](std::size_t begin, std::size_t end) {
-    for (std::size_t r = begin; r < end; ++r) {
-      double sum = 0;
-      for (const int child : coarse.children[r]) {
-        if (child < 0) continue;
-        int parity = 0;
-        for (const int c : level.place[child]) parity ^= c & 1;
-        if (parity) continue;
-        const Row& row = level.rows[child];
-        sum += level.b[child] - row.diagonal * level.x[child];
-        for (int s = 0; s < kSides; ++s) sum += row.beta[s] * level.x[row.neighbor[s]];
-      }
-      coarse.b[r] = sum;
-    }
-  });
+  restrict_to(coarse, level);
   cycle(k + 1);
-  for_chunks(level.rows.size(), [&](std::size_t begin, std::size_t end) {
+  for_chunks(level.rows(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t r = begin; r < end; ++r) level.x[r] += coarse.x[level.parent[r]];
   });
-  relax(level, 1, false), relax(level, 0, false);
+  relax(level, 1), relax(level, 0);
 }
 
 template <int D>
 void Multigrid<D>::apply(const std::vector<double>& in, std::vector<double>& out) {
   Level& fine = levels_[0];
-  std::copy(in.begin(), in.begin() + static_cast<long>(fine.rows.size()), fine.b.begin());
+  std::copy(in.begin(), in.end(), fine.b.begin());
   cycle(0);
   std::copy(fine.x.begin(), fine.x.end(), out.begin());
 }
@@ -208,11 +284,13 @@ void Multigrid<D>::apply(const std::vector<double>& in, std::vector<double>& out
 template <int D>
 double Multigrid<D>::bytes() const {
   std::size_t sum = cells_.capacity() * sizeof(int);
+  for (const auto& side : neighbors_) sum += side.capacity() * sizeof(int);
   for (const Level& l : levels_) {
-    sum += l.rows.capacity() * sizeof(Row) + l.place.capacity() * sizeof(Cell<D>) +
-           l.children.capacity() * sizeof(l.children[0]) + (l.x.capacity() + l.b.capacity()) * sizeof(double);
-    for (const auto* of_rows : {&l.colored[0], &l.colored[1], &l.parent})
-      sum += of_rows->capacity() * sizeof(int);
+    for (const auto* v : {&l.inverse, &l.x, &l.b, &l.left, &l.own.diagonal})
+      sum += v->capacity() * sizeof(double);
+    for (const auto& side : l.own.coupling) sum += side.capacity() * sizeof(double);
+    for (const auto& runs : l.runs) sum += runs.capacity() * sizeof(Run);
+    sum += l.parent.capacity() * sizeof(int) + l.children.capacity() * sizeof(l.children[0]);
   }
   return static_cast<double>(sum);
 }

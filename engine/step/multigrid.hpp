@@ -7,6 +7,9 @@
 // through the common face, Σ β h^(D−1) over twice the distance, half of what the sum PᵀAP gives. Storage and
 // the water surface's own terms add up. Smoothing is Gauss–Seidel in two colours, forward before and backward
 // after, so that the cycle is symmetric; colours and sums do not depend on the number of threads.
+//
+// Rows of a colour follow each other line by line, so that the neighbours of a run of rows are runs of rows,
+// and loops along runs work on several rows at once.
 
 #include <array>
 #include <vector>
@@ -19,7 +22,8 @@ namespace quicksand {
 template <int D>
 class Multigrid {
  public:
-  /// Coefficients of `m`; the levels' structure is kept while the wet cells stay the same.
+  /// Coefficients of `m`, which has to stay while they are used; the levels' structure is kept while the wet
+  /// cells and their neighbours stay the same.
   void build(const Grid<D>& grid, const PressureSystem<D>& m);
   /// out = one V-cycle on A out = in, from zero. Not const: works in the levels' own vectors.
   void apply(const std::vector<double>& in, std::vector<double>& out);
@@ -29,37 +33,47 @@ class Multigrid {
   /// What the levels take, bytes; and about as much of a wet cell before there are any.
   double bytes() const;
   static constexpr double bytes_per_row() {
-    const double row = sizeof(int) + sizeof(Row) + sizeof(Cell<D>) + 2 * sizeof(int) + 2 * sizeof(double);
-    return row * kChildren / (kChildren - 1) + kChildren * sizeof(int) / (kChildren - 1.0);
+    constexpr double coarse = 1.0 / (kChildren - 1);  // rows of all coarse levels to one of the finest
+    constexpr double vectors = 3.5 * sizeof(double) + sizeof(int);  // x, b, inverse, half of left; parent
+    constexpr double stencil = (1 + kSides) * sizeof(double) + kChildren * sizeof(int);
+    return (1 + kSides) * sizeof(int) + vectors * (1 + coarse) + stencil * coarse;
   }
 
  private:
   static constexpr int kSides = 2 * D, kChildren = 1 << D;
-  /// diagonal·x − Σ beta·x[neighbour] = b. Neighbours that are not there point at the row behind the last,
-  /// where x is zero.
-  struct Row {
-    double diagonal = 0, inverse = 0;
-    std::array<double, kSides> beta{};
-    std::array<int, kSides> neighbor{};
+  /// Consecutive rows of one colour whose neighbours on each side are consecutive, too.
+  struct Run {
+    int first = 0, count = 0;
+    std::array<int, kSides> neighbor{};  ///< of the first row; itself where there is none, with coupling 0
   };
   struct Level {
-    std::vector<Row> rows;
-    std::vector<Cell<D>> place;                        ///< of the row's cell on its own lattice
-    std::array<std::vector<int>, 2> colored;           ///< rows by the parity of their place
+    const Stencil<D>* matrix = nullptr;
+    Stencil<D> own;                                    ///< of a coarse level
+    std::vector<double> inverse;                       ///< of the diagonal
+    int even = 0;                                      ///< rows of the first colour
+    std::array<std::vector<Run>, 2> runs;              ///< per colour
+    std::array<std::vector<int>, 2> parts;             ///< per colour, runs that begin a part of some rows
     std::vector<int> parent;                           ///< row of the next level
     std::vector<std::array<int, kChildren>> children;  ///< rows of the level before; −1: none
-    std::vector<double> x, b;                          ///< x one longer than rows
+    std::vector<double> x, b, left;                    ///< left: b − A x of the even rows
+    std::size_t rows() const { return inverse.size(); }
   };
+  using Neighbors = std::array<std::vector<int>, kSides>;
 
   void build_structure(const Grid<D>& grid, const PressureSystem<D>& m);
-  void finish_level(Level& level);
-  void coarsen(Level& fine, Level& coarse);
+  void find_runs(Level& level, const Neighbors& neighbor);
+  Neighbors coarsen(Level& fine, Level& coarse, std::vector<Cell<D>>& place);
   void fill_coarse(const Level& fine, Level& coarse);
-  void relax(Level& level, int color, bool from_zero);
+  template <class F>
+  static void for_runs(const Level& level, int color, F&& f);
+  void relax(Level& level, int color);
+  void start(Level& level);
+  void restrict_to(Level& coarse, Level& fine);
   void cycle(std::size_t k);
 
   std::vector<Level> levels_;
   std::vector<int> cells_;  ///< of the structure
+  Neighbors neighbors_;
 };
 
 extern template class Multigrid<2>;

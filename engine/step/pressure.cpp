@@ -4,7 +4,7 @@
 
 #include "engine/step/conjugate_gradients.hpp"
 #include "engine/step/phases.hpp"
-#include "engine/threads/parallel.hpp"
+#include "engine/threads/chunks.hpp"
 
 namespace quicksand {
 namespace {
@@ -53,23 +53,54 @@ double drift_rate(const State<D>& s, int cell) {
   return std::clamp(beyond, -kDriftLimit, kDriftLimit) * rate;
 }
 
-/// Rows block by block, so that neighbours in space are near in memory.
+/// Lines of cells along x in a block.
+template <int D>
+constexpr int kLines = Blocks<D>::kCells / Blocks<D>::kEdge;
+/// Which of them a cell lies in.
+template <int D>
+int line_of(const Cell<D>& c) {
+  int line = 0;
+  for (int d = D - 1; d > 0; --d) line = line * Blocks<D>::kEdge + c[d] % Blocks<D>::kEdge;
+  return line;
+}
+/// 0 or 1: which cells' rows come first.
+template <int D>
+int color_of(const Cell<D>& c) {
+  int sum = 0;
+  for (const int i : c) sum += i;
+  return sum & 1;
+}
+
+/// Rows in the order that PressureSystem tells. Blocks that follow each other along x share their lines.
 template <int D>
 void number_rows(State<D>& s, PressureSystem<D>& m) {
-  std::vector<int> end(s.blocks.count() + 1, 0);
+  const int blocks = s.blocks.count();
+  using Counts = std::array<std::array<int, kLines<D>>, 2>;  // of a block's wet cells, per colour and line
+  std::vector<Counts> next(blocks);                          // then the rows that they begin with
   const auto wet_cells = [&](int b, auto&& f) {
-    s.blocks.cells(s.grid, b, false, [&](int i, const Cell<D>&) {
-      if (s.cell[i].wet()) f(i);
+    s.blocks.cells(s.grid, b, false, [&](int i, const Cell<D>& c) {
+      if (s.cell[i].wet()) f(i, next[b][color_of<D>(c)][line_of<D>(c)]);
     });
   };
-  s.blocks.all([&](int b) { wet_cells(b, [&](int) { ++end[b + 1]; }); });
-  for (int b = 0; b < s.blocks.count(); ++b) end[b + 1] += end[b];
-  m.cell.resize(end.back());
   s.blocks.all([&](int b) {
-    int row = end[b];
-    wet_cells(b, [&](int i) {
-      m.cell[row] = i;
-      s.cell[i].row = ++row;
+    next[b] = {};
+    wet_cells(b, [](int, int& count) { ++count; });
+  });
+  int row = 0;
+  for (const int color : {0, 1}) {
+    for (int first = 0, end; first < blocks; first = end) {
+      end = first + 1;
+      while (end < blocks && s.blocks.beside(end)) ++end;
+      for (int line = 0; line < kLines<D>; ++line)
+        for (int b = first; b < end; ++b) row += std::exchange(next[b][color][line], row);
+    }
+    if (color == 0) m.even = row;
+  }
+  m.cell.resize(row);
+  s.blocks.all([&](int b) {
+    wet_cells(b, [&](int i, int& at) {
+      m.cell[at] = i;
+      s.cell[i].row = ++at;
     });
   });
   for (auto& piston : m.pistons) {
@@ -88,51 +119,54 @@ double last_change(const State<D>& s, int cell) {
 /// About an axis a row is the balance of its cell per radian, so that the matrix stays symmetric: storage and
 /// drift times the cell's radius, fluxes times their face's.
 template <int D, bool kAxial>
-void assemble(State<D>& s, PressureSystem<D>& m, double dt) {
-  const std::size_t rows = m.cell.size();
-  m.diagonal.resize(rows), m.rhs.resize(rows), m.solution.resize(rows), m.change.resize(rows);
-  for (int d = 0; d < D; ++d) m.upper[d].resize(rows), m.lower[d].resize(rows), m.coupling[d].resize(rows);
+void assemble_row(State<D>& s, PressureSystem<D>& m, int i, double dt) {
   const double inverse_h = s.grid.inverse_h, inverse_h2 = inverse_h * inverse_h;
-  parallel_parts(rows, 512, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t r = begin; r < end; ++r) {
-      const int i = m.cell[r];
-      const CellState& c = s.cell[i];
-      const double radius = kAxial ? s.grid.cell_radius(i) : 1;
-      const double storage = radius * c.n * s.constants.water_compliance / dt;
-      double diagonal = storage;
-      double rhs = storage * s.pressure[i] + radius * drift_rate(s, i);
-      for (int d = 0; d < D; ++d) {
-        m.upper[d][r] = m.lower[d][r] = -1;
-        m.coupling[d][r] = 0;
-        for (int side : {0, 1}) {
-          const int face = i + side * s.grid.stride[d], other = i + (2 * side - 1) * s.grid.stride[d];
-          if (s.water_walls.closed(d, face)) continue;
-          const FaceFlow& f = s.flow[d][face];
-          const double at = kAxial ? s.grid.face_radius(d, face) : 1;
-          rhs += (1 - 2 * side) * at * f.flux(s.speeds[d][face]) * inverse_h;
-          const double beta = at * f.flux_response() * inverse_h2;
-          const CellState& o = s.cell[other];
-          if (const Port<D>* port = port_at(s, d, face)) {
-            diagonal += 2 * beta;  // half a cell to the face
-            rhs += 2 * beta * port->pressure;
-            continue;
-          }
-          if (!o.wet()) {
-            diagonal += beta / surface_distance(c.depth, o.depth);
-            continue;
-          }
-          diagonal += beta;
-          (side ? m.upper : m.lower)[d][r] = o.row - 1;
-          if (side) m.coupling[d][r] = -beta;
-        }
+  const CellState& c = s.cell[i];
+  const std::size_t r = c.row - 1;
+  const double radius = kAxial ? s.grid.cell_radius(i) : 1;
+  const double storage = radius * c.n * s.constants.water_compliance / dt;
+  double diagonal = storage;
+  double rhs = storage * s.pressure[i] + radius * drift_rate(s, i);
+  for (int d = 0; d < D; ++d)
+    for (int side : {0, 1}) {
+      int& neighbor = m.neighbor[2 * d + side][r];
+      double& coupling = m.matrix.coupling[2 * d + side][r];
+      neighbor = -1, coupling = 0;
+      const int face = i + side * s.grid.stride[d], other = i + (2 * side - 1) * s.grid.stride[d];
+      if (s.water_walls.closed(d, face)) continue;
+      const FaceFlow& f = s.flow[d][face];
+      const double at = kAxial ? s.grid.face_radius(d, face) : 1;
+      rhs += (1 - 2 * side) * at * f.flux(s.speeds[d][face]) * inverse_h;
+      const double beta = at * f.flux_response() * inverse_h2;
+      const CellState& o = s.cell[other];
+      if (const Port<D>* port = port_at(s, d, face)) {
+        diagonal += 2 * beta;  // half a cell to the face
+        rhs += 2 * beta * port->pressure;
+        continue;
       }
-      if (diagonal <= 0)
-        diagonal = 1, rhs = s.pressure[i];  // a closed cell of incompressible water: as it was
-      m.diagonal[r] = diagonal;
-      m.rhs[r] = rhs;
-      m.solution[r] = s.pressure[i];
-      m.change[r] = last_change(s, i);
+      if (!o.wet()) {
+        diagonal += beta / surface_distance(c.depth, o.depth);
+        continue;
+      }
+      diagonal += beta;
+      neighbor = o.row - 1, coupling = beta;
     }
+  if (diagonal <= 0) diagonal = 1, rhs = s.pressure[i];  // a closed cell of incompressible water: as it was
+  m.matrix.diagonal[r] = diagonal;
+  m.rhs[r] = rhs;
+  m.solution[r] = s.pressure[i];
+  m.change[r] = last_change(s, i);
+}
+
+template <int D>
+void assemble(State<D>& s, PressureSystem<D>& m, double dt) {
+  m.resize();
+  with_axial(s.grid, [&](auto axial) {
+    s.blocks.all([&](int b) {
+      s.blocks.cells(s.grid, b, false, [&](int i, const Cell<D>&) {
+        if (s.cell[i].wet()) assemble_row<D, axial>(s, m, i, dt);
+      });
+    });
   });
 }
 
@@ -143,11 +177,8 @@ void advance_explicitly(PressureSystem<D>& m) {
   std::vector<double> image(m.cell.size());
   multiply(m, m.solution, image);
   for (std::size_t r = 0; r < m.cell.size(); ++r) {
-    double own = m.diagonal[r];
-    for (int d = 0; d < D; ++d) {
-      if (m.upper[d][r] >= 0) own += m.coupling[d][r];
-      if (const int j = m.lower[d][r]; j >= 0) own += m.coupling[d][j];
-    }
+    double own = m.matrix.diagonal[r];
+    for (const auto& side : m.matrix.coupling) own -= side[r];
     m.solution[r] += (m.rhs[r] - image[r]) / own;
   }
 }
@@ -160,13 +191,15 @@ PressureReport solve_pressure(State<D>& s, double dt) {
   PressureSystem<D>& system = s.pressure_system;
   number_rows(s, system);
   if (system.cell.empty()) return {};
-  with_axial(s.grid, [&](auto axial) { assemble<D, axial>(s, system, dt); });
+  assemble(s, system, dt);
   PressureReport report{static_cast<int>(system.cell.size())};
   if (s.constants.explicit_pressure)
     advance_explicitly(system);
   else
     report = conjugate_gradients(s.grid, system, s.multigrid, s.constants.pressure_tolerance);
-  for (std::size_t r = 0; r < system.cell.size(); ++r) s.pressure[system.cell[r]] = system.solution[r];
+  for_chunks(system.cell.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t r = begin; r < end; ++r) s.pressure[system.cell[r]] = system.solution[r];
+  });
   return report;
 }
 

@@ -4,15 +4,29 @@
 
 namespace quicksand {
 
-/// Symmetric positive definite system on the wet cells, one entry per row for each upper neighbour.
+/// Rows diagonal·x − Σ coupling·x[neighbour], member by member. Sides of a cell: 2d below it along axis d,
+/// 2d + 1 above it.
+template <int D>
+struct Stencil {
+  std::vector<double> diagonal;
+  std::array<std::vector<double>, 2 * D> coupling;  ///< ≥ 0; 0 where there is no neighbour
+
+  void resize(std::size_t rows) {
+    diagonal.resize(rows);
+    for (auto& side : coupling) side.resize(rows);
+  }
+};
+
+/// Symmetric positive definite system on the wet cells. Those come first whose coordinates add up to an even
+/// number, then the others, both line by line along x: so the neighbours of consecutive rows are consecutive.
 template <int D>
 struct PressureSystem {
-  std::vector<int> cell;                        ///< row → cell, block by block
-  std::vector<double> diagonal, rhs, solution;  ///< 1/(Pa·s), 1/s, Pa
-  std::vector<double> change;                   ///< Pa, in which direction the solution is looked for first
-  std::array<std::vector<int>, D> upper;        ///< row of the neighbour in +d, or −1
-  std::array<std::vector<int>, D> lower;        ///< row of the neighbour in −d, or −1
-  std::array<std::vector<double>, D> coupling;  ///< ≤ 0, to the upper neighbour
+  std::vector<int> cell;                         ///< row → cell
+  int even = 0;                                  ///< rows that come first
+  Stencil<D> matrix;                             ///< 1/(Pa·s)
+  std::array<std::vector<int>, 2 * D> neighbor;  ///< row beyond a side, or −1
+  std::vector<double> rhs, solution;             ///< 1/s, Pa
+  std::vector<double> change;                    ///< Pa, in which direction the solution is looked for first
 
   /// What moves as one against the pressure of many cells: `response` b bᵀ on the rows.
   struct Piston {
@@ -22,13 +36,19 @@ struct PressureSystem {
   };
   std::vector<Piston> pistons;
 
-  /// Vectors of the solution, each one longer than the rows; kept, as a system is solved in every step.
+  /// Vectors of the solution; kept, as a system is solved in every step.
   struct Work {
-    std::vector<double> x, residual, preconditioned, direction, image;
+    std::vector<double> residual, preconditioned, direction, image;
   };
   Work work;
 
-  static constexpr double kBytesPerRow = (9 + D) * sizeof(double) + (1 + 2 * D) * sizeof(int);
+  void resize() {
+    const std::size_t rows = cell.size();
+    matrix.resize(rows);
+    for (auto& side : neighbor) side.resize(rows);
+    for (auto* v : {&rhs, &solution, &change}) v->resize(rows);
+  }
+  static constexpr double kBytesPerRow = (8 + 2 * D) * sizeof(double) + (1 + 2 * D) * sizeof(int);
 };
 
 }  // namespace quicksand

@@ -57,7 +57,8 @@ Allocated allocated(const State<D>& s) {
       {"faces", bytes_of_all(s.sums, s.image, s.follower, s.flow, s.rest, s.speeds, s.fixed_face, s.port_of)},
       {"cells",
        bytes_of_all(s.cell_sums, s.fixed_cell, s.cell, s.pressure, s.pressure_old, s.pressure_before)},
-      {"pressure system", bytes_of_all(m.cell, m.diagonal, m.rhs, m.solution, m.upper, m.lower, m.coupling)},
+      {"pressure system",
+       bytes_of_all(m.cell, m.matrix.diagonal, m.matrix.coupling, m.neighbor, m.rhs, m.solution, m.change)},
       {"multigrid", s.multigrid.bytes()},
   };
 }

@@ -17,13 +17,18 @@ template <int D, class Wet, class Beta>
 PressureSystem<D> system_on(const Grid<D>& grid, Wet&& wet, Beta&& beta) {
   PressureSystem<D> m;
   std::vector<int> row(grid.count(), -1);
-  for_each_cell(grid, [&](int i, const Cell<D>& c) {
-    if (wet(c)) row[i] = static_cast<int>(m.cell.size()), m.cell.push_back(i);
-  });
+  for (const int color : {0, 1}) {
+    for_each_cell(grid, [&](int i, const Cell<D>& c) {
+      int parity = 0;
+      for (const int at : c) parity ^= at & 1;
+      if (parity == color && wet(c)) row[i] = static_cast<int>(m.cell.size()), m.cell.push_back(i);
+    });
+    if (color == 0) m.even = static_cast<int>(m.cell.size());
+  }
   const std::size_t rows = m.cell.size();
-  m.diagonal.assign(rows, 1e-9), m.rhs.resize(rows), m.solution.assign(rows, 0);
-  for (int d = 0; d < D; ++d)
-    m.upper[d].assign(rows, -1), m.lower[d].assign(rows, -1), m.coupling[d].assign(rows, 0);
+  m.resize(), m.change.clear();
+  m.matrix.diagonal.assign(rows, 1e-9), m.solution.assign(rows, 0);
+  for (auto& side : m.neighbor) side.assign(rows, -1);
   std::mt19937 random(1);
   for (std::size_t r = 0; r < rows; ++r) {
     m.rhs[r] = static_cast<double>(random()) / 4294967296.0 - 0.5;
@@ -32,11 +37,12 @@ PressureSystem<D> system_on(const Grid<D>& grid, Wet&& wet, Beta&& beta) {
       const int j = row[m.cell[r] + grid.stride[d]];
       const double b = beta(d, c);
       if (j < 0) {
-        if (d == kUp) m.diagonal[r] += 2 * b;  // the surface
+        if (d == kUp) m.matrix.diagonal[r] += 2 * b;  // the surface
         continue;
       }
-      m.upper[d][r] = j, m.lower[d][j] = static_cast<int>(r), m.coupling[d][r] = -b;
-      m.diagonal[r] += b, m.diagonal[j] += b;
+      m.neighbor[2 * d + 1][r] = j, m.neighbor[2 * d][j] = static_cast<int>(r);
+      m.matrix.coupling[2 * d + 1][r] = m.matrix.coupling[2 * d][j] = b;
+      m.matrix.diagonal[r] += b, m.matrix.diagonal[j] += b;
     }
   }
   return m;
@@ -88,7 +94,7 @@ TEST(Multigrid, SameCellsWithOtherWalls) {
         [&](int d, const Cell<2>& c) { return d == 0 && c[0] == 7 ? gate : 1.0; });
     if (gate == 0)
       for (std::size_t r = 0; r < m.cell.size(); ++r)
-        if (grid.cell(m.cell[r])[0] == 7) m.lower[0][m.upper[0][r]] = -1, m.upper[0][r] = -1;
+        if (grid.cell(m.cell[r])[0] == 7) m.neighbor[0][m.neighbor[1][r]] = -1, m.neighbor[1][r] = -1;
     EXPECT_LE(conjugate_gradients(grid, m, multigrid, 1e-8).iterations, 20);
     std::vector<double> image(m.cell.size());
     multiply(m, m.solution, image);
@@ -106,7 +112,7 @@ TEST(Multigrid, CycleIsSymmetric) {
   ASSERT_GE(multigrid.levels(), 3u);
   const std::size_t n = m.cell.size();
   std::mt19937 random(2);
-  std::vector<double> a(n + 1, 0), b(n + 1, 0), ma(n + 1), mb(n + 1);
+  std::vector<double> a(n), b(n), ma(n), mb(n);
   for (std::size_t i = 0; i < n; ++i)
     a[i] = static_cast<double>(random()) / 4294967296.0, b[i] = static_cast<double>(random()) / 4294967296.0;
   multigrid.apply(a, ma), multigrid.apply(b, mb);

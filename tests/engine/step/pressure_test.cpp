@@ -39,21 +39,21 @@ void expect_symmetric_and_solved(const Scene& scene, double dt) {
 
   Eigen::MatrixXd a = Eigen::MatrixXd::Zero(rows, rows);
   for (int r = 0; r < rows; ++r) {
-    a(r, r) = m.diagonal[r];
-    for (int d = 0; d < D; ++d) {
-      if (const int j = m.upper[d][r]; j >= 0) {
-        EXPECT_EQ(m.cell[j], m.cell[r] + s.grid.stride[d]);
-        EXPECT_EQ(m.lower[d][j], r);  // the neighbours know each other
-        EXPECT_FALSE(s.water_walls.closed(d, m.cell[j]));
-        EXPECT_LT(m.coupling[d][r], 0);
-        a(r, j) += m.coupling[d][r];
-      } else {
-        EXPECT_EQ(m.coupling[d][r], 0);
+    a(r, r) = m.matrix.diagonal[r];
+    int color = 0;
+    for (const int c : s.grid.cell(m.cell[r])) color ^= c & 1;
+    EXPECT_EQ(color == 0, r < m.even);
+    for (int k = 0; k < 2 * D; ++k) {
+      const int d = k / 2, j = m.neighbor[k][r];
+      if (j < 0) {
+        EXPECT_EQ(m.matrix.coupling[k][r], 0);
+        continue;
       }
-      if (const int j = m.lower[d][r]; j >= 0) {
-        EXPECT_EQ(m.upper[d][j], r);
-        a(r, j) += m.coupling[d][j];
-      }
+      EXPECT_EQ(m.cell[j], m.cell[r] + (k % 2 ? 1 : -1) * s.grid.stride[d]);
+      EXPECT_EQ(m.neighbor[k ^ 1][j], r);  // the neighbours know each other
+      EXPECT_FALSE(s.water_walls.closed(d, m.cell[k % 2 ? j : r]));
+      EXPECT_GT(m.matrix.coupling[k][r], 0);
+      a(r, j) -= m.matrix.coupling[k][r];
     }
   }
   EXPECT_EQ((a - a.transpose()).cwiseAbs().maxCoeff(), 0);
