@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <initializer_list>
 #include <iterator>
+#include <memory>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -75,17 +76,23 @@ class Blocks {
   /// reaches further, nor does a point in a step. Returns the blocks that are no longer active.
   std::vector<int> activate(std::initializer_list<const BlockList*> lists) {
     std::vector<int> holding;
+    bool as_before = true;
     const auto hold = [&](int b) {
-      if (!held_[b]) held_[b] = 1, holding.push_back(b);
+      if (held_[b] & kHolds) return;
+      as_before = as_before && held_[b] == kHeld;
+      held_[b] |= kHolds;
+      holding.push_back(b);
     };
     for (const BlockList* list : lists)
       for (const int b : blocks_of(list->key)) hold(b);
     for (const int b : pinned_) hold(b);
+    as_before = as_before && holding.size() == holding_.size();
+    for (const int b : holding_) held_[b] = 0;
+    for (const int b : holding) held_[b] = kHeld;
+    holding_ = std::move(holding);
+    if (as_before) return {};
     const std::vector<int> before = clear();
-    for (const int b : holding) {
-      held_[b] = 0;
-      add_around(b);
-    }
+    for (const int b : holding_) add_around(b);
     std::sort(active_.begin(), active_.end());
     number();
     std::vector<int> left;
@@ -99,6 +106,8 @@ class Blocks {
   /// Makes just these active. Throws std::out_of_range for a place outside the domain.
   void adopt(std::vector<int> places) {
     for (const int b : places) std::ignore = number_.at(b);
+    for (const int b : holding_) held_[b] = 0;
+    holding_.clear();
     clear();
     active_ = std::move(places);
     number();
@@ -109,21 +118,36 @@ class Blocks {
   void group(BlockList& list) const {
     const auto slot = [&](int key) { return (number_[key / kCells] - 1) * kCells + key % kCells; };
     const std::size_t slots = static_cast<std::size_t>(count()) * kCells, parts = parts_of(list.key.size());
-    std::vector<std::uint32_t> next(parts * slots);  // per part and cell: how many; then the next one's place
-    for_parts(list.key, parts, [&](std::size_t part, int key, std::size_t from, std::size_t to) {
-      next[part * slots + slot(key)] += static_cast<std::uint32_t>(to - from);
+    // Per part and cell: how many points; then the place of the next one.
+    const auto next = std::make_unique_for_overwrite<std::uint32_t[]>(parts * slots);
+    for_parts(list.key, parts, [&](std::size_t part, auto&& stretches) {
+      std::uint32_t* mine = &next[part * slots];
+      std::fill(mine, mine + slots, 0);
+      stretches([&](int key, std::size_t from, std::size_t to) {
+        mine[slot(key)] += static_cast<std::uint32_t>(to - from);
+      });
     });
+    std::vector<std::uint32_t> first(count() + 1);  // of the blocks
+    all([&](int b) {
+      for (std::size_t part = 0; part < parts; ++part)
+        for (int k = 0; k < kCells; ++k) first[b + 1] += next[part * slots + b * kCells + k];
+    });
+    for (int b = 0; b < count(); ++b) first[b + 1] += first[b];
     list.begin.resize(slots + 1);
-    std::uint32_t at = 0;
-    for (std::size_t i = 0; i < slots; ++i) {
-      list.begin[i] = at;
-      for (std::size_t part = 0; part < parts; ++part) at += std::exchange(next[part * slots + i], at);
-    }
-    list.begin[slots] = at;
+    all([&](int b) {
+      std::uint32_t at = first[b];
+      for (std::size_t i = b * std::size_t{kCells}, end = i + kCells; i < end; ++i) {
+        list.begin[i] = at;
+        for (std::size_t part = 0; part < parts; ++part) at += std::exchange(next[part * slots + i], at);
+      }
+    });
+    list.begin[slots] = first.back();
     list.order.resize(list.key.size());
-    for_parts(list.key, parts, [&](std::size_t part, int key, std::size_t from, std::size_t to) {
-      std::uint32_t& place = next[part * slots + slot(key)];
-      for (std::size_t p = from; p < to; ++p) list.order[place++] = static_cast<std::uint32_t>(p);
+    for_parts(list.key, parts, [&](std::size_t part, auto&& stretches) {
+      stretches([&](int key, std::size_t from, std::size_t to) {
+        std::uint32_t& place = next[part * slots + slot(key)];
+        for (std::size_t p = from; p < to; ++p) list.order[place++] = static_cast<std::uint32_t>(p);
+      });
     });
   }
   /// Grouped points of an active block.
@@ -161,8 +185,12 @@ class Blocks {
   /// Σ f(number) in a fixed order.
   template <class T, class F>
   T sum(F&& f) const {
-    std::vector<T> partial(active_.size());
-    all([&](int b) { partial[b] = f(b); });
+    constexpr std::size_t some = 4;  // blocks that one thread adds up
+    std::vector<T> partial((active_.size() + some - 1) / some);
+    parallel(partial.size(), [&](std::size_t i) {
+      for (std::size_t b = i * some; b < std::min(active_.size(), (i + 1) * some); ++b)
+        partial[i] += f(static_cast<int>(b));
+    });
     T total{};
     for (const T& p : partial) total += p;
     return total;
@@ -210,26 +238,29 @@ class Blocks {
     constexpr std::size_t least = 16384, most = 8;
     return std::clamp<std::size_t>(points / least, 1, std::min<std::size_t>(most, thread_count()));
   }
-  /// f(part, key, from, to) for stretches of equal keys, which are long where points lie in the order of
-  /// blocks. One thread does all of a part.
+  /// f(part, stretches) for the parts, by one thread each; stretches(g): g(key, from, to) for stretches of
+  /// equal keys, which are long where points lie in the order of blocks.
   template <class F>
   static void for_parts(const std::vector<int>& key, std::size_t parts, F&& f) {
     parallel_parts(parts, 1, [&](std::size_t first, std::size_t last) {
-      for (std::size_t part = first; part < last; ++part) {
-        const std::size_t end = key.size() * (part + 1) / parts;
-        for (std::size_t from = key.size() * part / parts, to; from < end; from = to) {
-          for (to = from + 1; to < end && key[to] == key[from];) ++to;
-          f(part, key[from], from, to);
-        }
-      }
+      for (std::size_t part = first; part < last; ++part)
+        f(part, [&](auto&& g) {
+          const std::size_t end = key.size() * (part + 1) / parts;
+          for (std::size_t from = key.size() * part / parts, to; from < end; from = to) {
+            for (to = from + 1; to < end && key[to] == key[from];) ++to;
+            g(key[from], from, to);
+          }
+        });
     });
   }
   /// Blocks that hold located points, some of them more than once.
   static std::vector<int> blocks_of(const std::vector<int>& key) {
     std::vector<std::vector<int>> found(parts_of(key.size()));
-    for_parts(key, found.size(), [&](std::size_t part, int k, std::size_t, std::size_t) {
+    for_parts(key, found.size(), [&](std::size_t part, auto&& stretches) {
       std::vector<int>& mine = found[part];
-      if (mine.empty() || mine.back() != k / kCells) mine.push_back(k / kCells);
+      stretches([&](int k, std::size_t, std::size_t) {
+        if (mine.empty() || mine.back() != k / kCells) mine.push_back(k / kCells);
+      });
     });
     for (std::size_t part = 1; part < found.size(); ++part)
       found[0].insert(found[0].end(), found[part].begin(), found[part].end());
@@ -276,7 +307,9 @@ class Blocks {
   Cell<D> cells_{}, blocks_{};
   std::vector<int> active_, pinned_;  ///< places
   Field<int> number_;                 ///< per place, 1 + number of an active block; 0: not active
-  Field<std::uint8_t> held_;          ///< scratch
+  std::vector<int> holding_;          ///< places of blocks that held points when blocks became active
+  Field<std::uint8_t> held_;          ///< per place, kHeld if it is among them
+  static constexpr std::uint8_t kHeld = 1, kHolds = 2;
   std::array<std::vector<int>, kColors> of_color_;
 };
 

@@ -2,59 +2,10 @@
 
 #include <cmath>
 
-#include "engine/grid/lanes.hpp"
-#include "engine/threads/chunks.hpp"
+#include "engine/step/norms.hpp"
 
 namespace quicksand {
 namespace {
-
-/// Largest magnitude of many numbers, several at a time; not a number if one is.
-class Largest {
- public:
-  QUICKSAND_INLINE void add(const BatchLanes& v) {
-    const BatchLanes size = where(v < 0, -v, v);
-    most_ = where(size > most_, size, most_);
-    sick_ += v - v;  // 0, or not a number
-  }
-  double of(double v) const {
-    double most = std::abs(v);
-    for (int k = 0; k < kBatch; ++k) most = larger(most, sick_[k] == 0 ? most_[k] : sick_[k]);
-    return most;
-  }
-  static double larger(double a, double b) { return b > a || std::isnan(b) ? b : a; }
-
- private:
-  BatchLanes most_{}, sick_{};
-};
-
-/// f(i) → kBatch numbers from i on, one(i) → number i.
-template <class F, class One>
-double largest(std::size_t n, F&& f, One&& one) {
-  return reduce_chunks(
-      n, 0.0,
-      [&](std::size_t begin, std::size_t end) {
-        Largest most;
-        double rest = 0;
-        std::size_t i = begin;
-        for (; i + kBatch <= end; i += kBatch) most.add(f(i));
-        for (; i < end; ++i) rest = Largest::larger(rest, std::abs(one(i)));
-        return most.of(rest);
-      },
-      Largest::larger);
-}
-
-double dot(std::size_t n, const std::vector<double>& a, const std::vector<double>& b) {
-  const auto part = [&](std::size_t begin, std::size_t end) {
-    BatchLanes sums{};
-    double sum = 0;
-    std::size_t i = begin;
-    for (; i + kBatch <= end; i += kBatch) sums += lanes_from<kBatch>(a[i]) * lanes_from<kBatch>(b[i]);
-    for (; i < end; ++i) sum += a[i] * b[i];
-    for (int k = 0; k < kBatch; ++k) sum += sums[k];
-    return sum;
-  };
-  return reduce_chunks(n, 0.0, part, [](double x, double y) { return x + y; });
-}
 
 template <int D>
 void add_pistons(const PressureSystem<D>& m, const std::vector<double>& x, std::vector<double>& y) {
@@ -92,9 +43,12 @@ PressureReport conjugate_gradients(const Grid<D>& grid, PressureSystem<D>& m, Mu
   std::vector<double>&direction = m.work.direction, &image = m.work.image;
   for (std::vector<double>* v : {&r, &z, &direction, &image}) v->resize(rows);
   multigrid.build(grid, m);
+  m.changed = false;
   const auto times = [&](const std::vector<double>& in, std::vector<double>& out) {
-    multigrid.multiply(in, out);
+    const double product = multigrid.multiply(in, out);
+    if (m.pistons.empty()) return product;
     add_pistons(m, in, out);
+    return dot(rows, in, out);
   };
   times(x, image);
   const auto magnitude = [&](const std::vector<double>& v) {
@@ -126,20 +80,18 @@ PressureReport conjugate_gradients(const Grid<D>& grid, PressureSystem<D>& m, Mu
         });
   };
   if (residual > target && !m.change.empty()) {
-    times(m.change, image);
-    const double energy = dot(rows, m.change, image);
+    const double energy = times(m.change, image);
     if (energy > 0) go(m.change, dot(rows, m.change, r) / energy);
   }
   double rz = 0;
   while (residual > target && report.iterations < kMaxIterations) {
-    multigrid.apply(r, z);
-    const double next = dot(rows, r, z), turn = report.iterations ? next / rz : 0;
+    const double next = multigrid.apply(r, z), turn = report.iterations ? next / rz : 0;
     rz = next;
     for_chunks(rows, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) direction[i] = turn == 0 ? z[i] : z[i] + turn * direction[i];
     });
-    times(direction, image);
-    go(direction, rz / dot(rows, direction, image));
+    const double energy = times(direction, image);
+    go(direction, rz / energy);
     ++report.iterations;
   }
   report.residual = scale > 0 ? residual / scale : 0;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "engine/step/norms.hpp"
 #include "engine/threads/chunks.hpp"
 
 namespace quicksand {
@@ -37,50 +38,67 @@ struct Sides {
 template <int D>
 void Multigrid<D>::find_runs(Level& level, const Neighbors& neighbor) {
   const int n = static_cast<int>(level.rows());
-  for (const int color : {0, 1}) {
-    std::vector<Run>& runs = level.runs[color];
-    runs.clear(), level.parts[color] = {0};
-    int in_part = 0;
-    for (int r = color ? level.even : 0, end = color ? n : level.even; r < end; ++r) {
-      const auto goes_on = [&](const Run& run) {
-        if (run.count == kLongestRun) return false;
-        for (int k = 0; k < kSides; ++k) {
-          const bool none = run.neighbor[k] == run.first;
-          if (neighbor[k][r] != (none ? -1 : run.neighbor[k] + run.count)) return false;
-        }
-        return true;
-      };
-      if (in_part >= static_cast<int>(kChunk)) {
-        level.parts[color].push_back(static_cast<int>(runs.size()));
-        in_part = 0;
-      }
-      if (in_part == 0 || !goes_on(runs.back())) {
-        runs.push_back({r, 0, {}});
-        for (int k = 0; k < kSides; ++k) runs.back().neighbor[k] = neighbor[k][r] < 0 ? r : neighbor[k][r];
-      }
-      ++runs.back().count, ++in_part;
+  std::vector<Run>& runs = level.runs;
+  runs.clear(), level.parts.clear();
+  int in_part = static_cast<int>(kChunk);
+  const auto goes_on = [&](const Run& run, int r) {
+    if (run.count == kLongestRun) return false;
+    for (int k = 0; k < kSides; ++k) {
+      const bool none = run.neighbor[k] == run.first;
+      if (neighbor[k][r] != (none ? -1 : run.neighbor[k] + run.count)) return false;
     }
-    level.parts[color].push_back(static_cast<int>(runs.size()));
+    return true;
+  };
+  for (int r = 0; r < n; ++r) {
+    if (r == level.even) level.odd_part = static_cast<int>(level.parts.size());
+    const bool new_part = in_part >= static_cast<int>(kChunk) || r == level.even;
+    if (new_part) level.parts.push_back(static_cast<int>(runs.size())), in_part = 0;
+    if (new_part || !goes_on(runs.back(), r)) {
+      runs.push_back({r, 0, {}});
+      for (int k = 0; k < kSides; ++k) runs.back().neighbor[k] = neighbor[k][r] < 0 ? r : neighbor[k][r];
+    }
+    ++runs.back().count, ++in_part;
   }
+  if (level.even == n) level.odd_part = static_cast<int>(level.parts.size());
+  level.parts.push_back(static_cast<int>(runs.size()));
 }
 
 /// f(run) for the runs of a colour.
 template <int D>
 template <class F>
 void Multigrid<D>::for_runs(const Level& level, int color, F&& f) {
-  const std::vector<int>& parts = level.parts[color];
+  const int first = color ? level.odd_part : 0,
+            parts = (color ? static_cast<int>(level.parts.size()) - 1 : level.odd_part) - first;
   const auto some = [&](std::size_t begin, std::size_t end) {
-    for (int i = parts[begin]; i < parts[end]; ++i) f(level.runs[color][i]);
+    for (int i = level.parts[first + begin]; i < level.parts[first + end]; ++i) f(level.runs[i]);
   };
-  if (parts.size() < 4)
-    some(0, parts.size() - 1);
+  if (parts < 3)
+    some(0, parts);
   else
-    parallel_parts(parts.size() - 1, 1, some);
+    parallel_parts(parts, 1, some);
+}
+
+/// Σ f(run) over all runs, part by part.
+template <int D>
+template <class F>
+double Multigrid<D>::sum_runs(const Level& level, F&& f) {
+  const std::size_t parts = level.parts.size() - 1;
+  std::vector<double> sums(parts);
+  const auto some = [&](std::size_t begin, std::size_t end) {
+    for (std::size_t part = begin; part < end; ++part)
+      for (int i = level.parts[part]; i < level.parts[part + 1]; ++i) sums[part] += f(level.runs[i]);
+  };
+  if (parts < 3)
+    some(0, parts);
+  else
+    parallel_parts(parts, 1, some);
+  double sum = 0;
+  for (const double s : sums) sum += s;
+  return sum;
 }
 
 template <int D>
 void Multigrid<D>::build_structure(const Grid<D>& grid, const PressureSystem<D>& m) {
-  cells_ = m.cell, neighbors_ = m.neighbor;
   std::vector<Cell<D>> place;
   for (const int cell : m.cell) place.push_back(grid.cell(cell));
   levels_.assign(1, {});
@@ -166,7 +184,8 @@ typename Multigrid<D>::Neighbors Multigrid<D>::coarsen(Level& fine, Level& coars
 template <int D>
 void Multigrid<D>::fill_coarse(const Level& fine, Level& coarse) {
   const Stencil<D>& from = *fine.matrix;
-  for_chunks(coarse.rows(), [&](std::size_t begin, std::size_t end) {
+  constexpr std::size_t kSome = 256;  // rows that are worth a thread
+  parallel_parts(coarse.rows(), kSome, [&](std::size_t begin, std::size_t end) {
     for (std::size_t r = begin; r < end; ++r) {
       std::array<double, kSides> beta{};
       double own = 0;  // storage and surface
@@ -190,7 +209,7 @@ void Multigrid<D>::fill_coarse(const Level& fine, Level& coarse) {
 
 template <int D>
 void Multigrid<D>::build(const Grid<D>& grid, const PressureSystem<D>& m) {
-  if (levels_.empty() || m.cell != cells_ || m.neighbor != neighbors_) build_structure(grid, m);
+  if (levels_.empty() || m.changed) build_structure(grid, m);
   Level& fine = levels_[0];
   fine.matrix = &m.matrix;
   for_chunks(fine.rows(), [&](std::size_t begin, std::size_t end) {
@@ -203,15 +222,15 @@ void Multigrid<D>::build(const Grid<D>& grid, const PressureSystem<D>& m) {
 }
 
 template <int D>
-void Multigrid<D>::multiply(const std::vector<double>& x, std::vector<double>& y) const {
+double Multigrid<D>::multiply(const std::vector<double>& x, std::vector<double>& y) const {
   const Level& fine = levels_[0];
-  for (const int color : {0, 1})
-    for_runs(fine, color, [&](const Run& run) {
-      const Sides<kSides> sides(*fine.matrix, run, x.data());
-      const double *diagonal = fine.matrix->diagonal.data() + run.first, *own = x.data() + run.first;
-      double* __restrict out = y.data() + run.first;
-      for (int i = 0; i < run.count; ++i) out[i] = diagonal[i] * own[i] - sides.sum(i);
-    });
+  return sum_runs(fine, [&](const Run& run) {
+    const Sides<kSides> sides(*fine.matrix, run, x.data());
+    const double *diagonal = fine.matrix->diagonal.data() + run.first, *own = x.data() + run.first;
+    double* __restrict out = y.data() + run.first;
+    for (int i = 0; i < run.count; ++i) out[i] = diagonal[i] * own[i] - sides.sum(i);
+    return lanes_dot(run.count, own, out);
+  });
 }
 
 /// Sets the rows of a colour to what their neighbours ask for.
@@ -226,17 +245,16 @@ void Multigrid<D>::relax(Level& level, int color) {
   });
 }
 
-/// relax of the even rows where all x are zero still.
+/// What `relax` makes of some even rows where all x are zero still; others stay zero.
 template <int D>
-void Multigrid<D>::start(Level& level) {
-  for_chunks(level.even, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t r = begin; r < end; ++r) level.x[r] = level.b[r] * level.inverse[r];
-  });
-  std::fill(level.x.begin() + level.even, level.x.end(), 0);
+void Multigrid<D>::start(Level& level, std::size_t begin, std::size_t end) {
+  const std::size_t middle = std::clamp<std::size_t>(level.even, begin, end);
+  for (std::size_t r = begin; r < middle; ++r) level.x[r] = level.b[r] * level.inverse[r];
+  for (std::size_t r = middle; r < end; ++r) level.x[r] = 0;
 }
 
-/// What start and relax of the odd rows leave over: of even rows what came from these since, of odd ones
-/// nothing.
+/// What the first relaxation of both colours leaves over: of even rows what came from the odd ones since, of
+/// these nothing. The coarse level starts with it.
 template <int D>
 void Multigrid<D>::restrict_to(Level& coarse, Level& fine) {
   for_runs(fine, 0, [&](const Run& run) {
@@ -251,46 +269,52 @@ void Multigrid<D>::restrict_to(Level& coarse, Level& fine) {
         if (child >= 0 && child < fine.even) sum += fine.left[child];
       coarse.b[r] = sum;
     }
+    start(coarse, begin, end);
   });
 }
 
 template <int D>
+void Multigrid<D>::solve_last(Level& level) {
+  relax(level, 1);
+  for (int i = 1; i < kLastSweeps; ++i) relax(level, 0), relax(level, 1);
+  for (int i = 0; i < kLastSweeps; ++i) relax(level, 1), relax(level, 0);
+}
+
+/// On a level that has started.
+template <int D>
 void Multigrid<D>::cycle(std::size_t k) {
   Level& level = levels_[k];
-  start(level);
-  relax(level, 1);
-  if (k + 1 == levels_.size()) {
-    for (int i = 1; i < kLastSweeps; ++i) relax(level, 0), relax(level, 1);
-    for (int i = 0; i < kLastSweeps; ++i) relax(level, 1), relax(level, 0);
-    return;
-  }
+  if (k + 1 == levels_.size()) return solve_last(level);
   Level& coarse = levels_[k + 1];
+  relax(level, 1);
   restrict_to(coarse, level);
   cycle(k + 1);
-  for_chunks(level.rows(), [&](std::size_t begin, std::size_t end) {
+  for_chunks(level.even, [&](std::size_t begin, std::size_t end) {  // odd rows follow from these
     for (std::size_t r = begin; r < end; ++r) level.x[r] += coarse.x[level.parent[r]];
   });
   relax(level, 1), relax(level, 0);
 }
 
 template <int D>
-void Multigrid<D>::apply(const std::vector<double>& in, std::vector<double>& out) {
+double Multigrid<D>::apply(std::vector<double>& in, std::vector<double>& out) {
   Level& fine = levels_[0];
-  std::copy(in.begin(), in.end(), fine.b.begin());
+  std::swap(fine.b, in), std::swap(fine.x, out);
+  for_chunks(fine.rows(), [&](std::size_t begin, std::size_t end) { start(fine, begin, end); });
   cycle(0);
-  std::copy(fine.x.begin(), fine.x.end(), out.begin());
+  const double product = dot(fine.rows(), fine.b, fine.x);
+  std::swap(fine.b, in), std::swap(fine.x, out);
+  return product;
 }
 
 template <int D>
 double Multigrid<D>::bytes() const {
-  std::size_t sum = cells_.capacity() * sizeof(int);
-  for (const auto& side : neighbors_) sum += side.capacity() * sizeof(int);
+  std::size_t sum = 0;
   for (const Level& l : levels_) {
     for (const auto* v : {&l.inverse, &l.x, &l.b, &l.left, &l.own.diagonal})
       sum += v->capacity() * sizeof(double);
     for (const auto& side : l.own.coupling) sum += side.capacity() * sizeof(double);
-    for (const auto& runs : l.runs) sum += runs.capacity() * sizeof(Run);
-    sum += l.parent.capacity() * sizeof(int) + l.children.capacity() * sizeof(l.children[0]);
+    sum += l.runs.capacity() * sizeof(Run) + l.parent.capacity() * sizeof(int) +
+           l.children.capacity() * sizeof(l.children[0]);
   }
   return static_cast<double>(sum);
 }

@@ -22,13 +22,14 @@ namespace quicksand {
 template <int D>
 class Multigrid {
  public:
-  /// Coefficients of `m`, which has to stay while they are used; the levels' structure is kept while the wet
-  /// cells and their neighbours stay the same.
+  /// Coefficients of `m`, which has to stay while they are used; the levels' structure is that of before
+  /// unless `m.changed`.
   void build(const Grid<D>& grid, const PressureSystem<D>& m);
-  /// out = one V-cycle on A out = in, from zero. Not const: works in the levels' own vectors.
-  void apply(const std::vector<double>& in, std::vector<double>& out);
-  /// y = A x of the finest level.
-  void multiply(const std::vector<double>& x, std::vector<double>& y) const;
+  /// out = one V-cycle on A out = in, from zero; returns in·out. Not const: works in the levels' own vectors,
+  /// and `in` is theirs meanwhile.
+  double apply(std::vector<double>& in, std::vector<double>& out);
+  /// y = A x of the finest level; returns x·y.
+  double multiply(const std::vector<double>& x, std::vector<double>& y) const;
   std::size_t levels() const { return levels_.size(); }
   /// What the levels take, bytes; and about as much of a wet cell before there are any.
   double bytes() const;
@@ -36,7 +37,7 @@ class Multigrid {
     constexpr double coarse = 1.0 / (kChildren - 1);  // rows of all coarse levels to one of the finest
     constexpr double vectors = 3.5 * sizeof(double) + sizeof(int);  // x, b, inverse, half of left; parent
     constexpr double stencil = (1 + kSides) * sizeof(double) + kChildren * sizeof(int);
-    return (1 + kSides) * sizeof(int) + vectors * (1 + coarse) + stencil * coarse;
+    return vectors * (1 + coarse) + stencil * coarse;
   }
 
  private:
@@ -51,8 +52,9 @@ class Multigrid {
     Stencil<D> own;                                    ///< of a coarse level
     std::vector<double> inverse;                       ///< of the diagonal
     int even = 0;                                      ///< rows of the first colour
-    std::array<std::vector<Run>, 2> runs;              ///< per colour
-    std::array<std::vector<int>, 2> parts;             ///< per colour, runs that begin a part of some rows
+    std::vector<Run> runs;                             ///< of even rows, then of odd ones
+    std::vector<int> parts;                            ///< run that begins a part of some rows; the end
+    int odd_part = 0;                                  ///< the first part of odd rows
     std::vector<int> parent;                           ///< row of the next level
     std::vector<std::array<int, kChildren>> children;  ///< rows of the level before; −1: none
     std::vector<double> x, b, left;                    ///< left: b − A x of the even rows
@@ -66,14 +68,15 @@ class Multigrid {
   void fill_coarse(const Level& fine, Level& coarse);
   template <class F>
   static void for_runs(const Level& level, int color, F&& f);
+  template <class F>
+  static double sum_runs(const Level& level, F&& f);
   void relax(Level& level, int color);
-  void start(Level& level);
+  void start(Level& level, std::size_t begin, std::size_t end);
   void restrict_to(Level& coarse, Level& fine);
+  void solve_last(Level& level);
   void cycle(std::size_t k);
 
   std::vector<Level> levels_;
-  std::vector<int> cells_;  ///< of the structure
-  Neighbors neighbors_;
 };
 
 extern template class Multigrid<2>;

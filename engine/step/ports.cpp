@@ -67,6 +67,7 @@ class WaterPass {
     advance_straddlers();
     catch_crossing();
     remove_gone();
+    find_straddlers();
     for (std::size_t k = 0; k < s_.ports.size(); ++k)
       if (s_.ports[k].submerged()) let_in(static_cast<int>(k));
     for (std::size_t r = 0; r < before.size(); ++r)
@@ -237,6 +238,14 @@ class WaterPass {
     return x;
   }
 
+  /// Which straddlers each port has.
+  void find_straddlers() {
+    first_.assign(s_.ports.size(), -1);
+    next_.resize(s_.straddlers.size());
+    for (int i = static_cast<int>(next_.size()) - 1; i >= 0; --i)
+      next_[i] = std::exchange(first_[s_.straddlers[i].port], i);
+  }
+
   /// Makes up for what the flux has brought in: new straddlers in lanes that have none, else those that are
   /// there come in a little further.
   void let_in(int k) {
@@ -245,21 +254,17 @@ class WaterPass {
     if (port.owed <= 0 || port.inward * s_.speeds[port.d][port.face].water <= 0) return;
     const int lanes = power(s_.constants.points_per_cell, D - 1);
     used_.assign(lanes, 0);
-    std::vector<std::size_t> here;
-    for (std::size_t i = 0; i < s_.straddlers.size(); ++i)
-      if (s_.straddlers[i].port == k) {
-        here.push_back(i);
-        used_[lane_of(port, s_.water.x[s_.straddlers[i].point])] = 1;
-      }
+    int here = 0;
+    for (int i = first_[k]; i >= 0; i = next_[i], ++here)
+      used_[lane_of(port, s_.water.x[s_.straddlers[i].point])] = 1;
     const auto free = std::count(used_.begin(), used_.end(), 0);
     const double full = f.n * s_.constants.water_density * share(s_) * s_.grid.face_radius(port.d, port.face);
-    const double mass =
-        s_.constants.water_density * port.owed / static_cast<double>(free ? free : here.size());
+    const double mass = s_.constants.water_density * port.owed / static_cast<double>(free ? free : here);
     if (free) {
       for (int lane = 0; lane < lanes; ++lane)
         if (!used_[lane]) enter(k, lane, std::min(mass / full, 1.0) - 0.5, full);
     } else {
-      for (const std::size_t i : here) {
+      for (int i = first_[k]; i >= 0; i = next_[i]) {
         Straddler& q = s_.straddlers[i];
         q.depth = std::min(q.depth + mass / q.full_mass, 0.5);
         put(q);
@@ -285,6 +290,7 @@ class WaterPass {
   const double dt_;
   Exchange<D>& exchange_;
   std::vector<char> caught_, used_;
+  std::vector<int> first_, next_;  ///< straddlers: the first of a port, the one after; −1: none
 };
 
 /// Grains whose middle has passed an open side.

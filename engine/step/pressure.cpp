@@ -1,6 +1,8 @@
 #include "engine/step/pressure.hpp"
 
+#include <atomic>
 #include <cmath>
+#include <utility>
 
 #include "engine/step/conjugate_gradients.hpp"
 #include "engine/step/phases.hpp"
@@ -97,12 +99,17 @@ void number_rows(State<D>& s, PressureSystem<D>& m) {
     if (color == 0) m.even = row;
   }
   m.cell.resize(row);
+  std::atomic<bool> changed = m.changed;
   s.blocks.all([&](int b) {
+    bool differ = false;
     wet_cells(b, [&](int i, int& at) {
+      differ = differ || m.cell[at] != i;
       m.cell[at] = i;
       s.cell[i].row = ++at;
     });
+    if (differ) changed.store(true, std::memory_order_relaxed);
   });
+  m.changed = changed;
   for (auto& piston : m.pistons) {
     piston.row.clear();
     for (int cell : piston.cell) piston.row.push_back(s.cell[cell].row - 1);
@@ -118,8 +125,9 @@ double last_change(const State<D>& s, int cell) {
 
 /// About an axis a row is the balance of its cell per radian, so that the matrix stays symmetric: storage and
 /// drift times the cell's radius, fluxes times their face's.
+/// Returns whether the row's neighbours are others than before.
 template <int D, bool kAxial>
-void assemble_row(State<D>& s, PressureSystem<D>& m, int i, double dt) {
+bool assemble_row(State<D>& s, PressureSystem<D>& m, int i, double dt) {
   const double inverse_h = s.grid.inverse_h, inverse_h2 = inverse_h * inverse_h;
   const CellState& c = s.cell[i];
   const std::size_t r = c.row - 1;
@@ -127,47 +135,58 @@ void assemble_row(State<D>& s, PressureSystem<D>& m, int i, double dt) {
   const double storage = radius * c.n * s.constants.water_compliance / dt;
   double diagonal = storage;
   double rhs = storage * s.pressure[i] + radius * drift_rate(s, i);
+  bool changed = false;
+  const auto couple = [&](int d, int side, int neighbor, double beta) {
+    changed = changed || m.neighbor[2 * d + side][r] != neighbor;
+    m.neighbor[2 * d + side][r] = neighbor;
+    m.matrix.coupling[2 * d + side][r] = beta;
+  };
   for (int d = 0; d < D; ++d)
     for (int side : {0, 1}) {
-      int& neighbor = m.neighbor[2 * d + side][r];
-      double& coupling = m.matrix.coupling[2 * d + side][r];
-      neighbor = -1, coupling = 0;
       const int face = i + side * s.grid.stride[d], other = i + (2 * side - 1) * s.grid.stride[d];
-      if (s.water_walls.closed(d, face)) continue;
+      if (s.water_walls.closed(d, face)) {
+        couple(d, side, -1, 0);
+        continue;
+      }
       const FaceFlow& f = s.flow[d][face];
       const double at = kAxial ? s.grid.face_radius(d, face) : 1;
       rhs += (1 - 2 * side) * at * f.flux(s.speeds[d][face]) * inverse_h;
       const double beta = at * f.flux_response() * inverse_h2;
       const CellState& o = s.cell[other];
-      if (const Port<D>* port = port_at(s, d, face)) {
+      const Port<D>* port = port_at(s, d, face);
+      const bool inner = !port && o.wet();
+      couple(d, side, inner ? o.row - 1 : -1, inner ? beta : 0);
+      if (inner) {
+        diagonal += beta;
+      } else if (port) {
         diagonal += 2 * beta;  // half a cell to the face
         rhs += 2 * beta * port->pressure;
-        continue;
-      }
-      if (!o.wet()) {
+      } else {
         diagonal += beta / surface_distance(c.depth, o.depth);
-        continue;
       }
-      diagonal += beta;
-      neighbor = o.row - 1, coupling = beta;
     }
   if (diagonal <= 0) diagonal = 1, rhs = s.pressure[i];  // a closed cell of incompressible water: as it was
   m.matrix.diagonal[r] = diagonal;
   m.rhs[r] = rhs;
   m.solution[r] = s.pressure[i];
   m.change[r] = last_change(s, i);
+  return changed;
 }
 
 template <int D>
 void assemble(State<D>& s, PressureSystem<D>& m, double dt) {
   m.resize();
+  std::atomic<bool> changed = m.changed;
   with_axial(s.grid, [&](auto axial) {
     s.blocks.all([&](int b) {
+      bool differ = false;
       s.blocks.cells(s.grid, b, false, [&](int i, const Cell<D>&) {
-        if (s.cell[i].wet()) assemble_row<D, axial>(s, m, i, dt);
+        if (s.cell[i].wet()) differ = assemble_row<D, axial>(s, m, i, dt) || differ;
       });
+      if (differ) changed.store(true, std::memory_order_relaxed);
     });
   });
+  m.changed = changed;
 }
 
 /// One step of the explicit scheme. A row's sum is the part of its diagonal that belongs to the cell alone:

@@ -25,6 +25,7 @@ struct PressureSystem {
   int even = 0;                                  ///< rows that come first
   Stencil<D> matrix;                             ///< 1/(Pa·s)
   std::array<std::vector<int>, 2 * D> neighbor;  ///< row beyond a side, or −1
+  bool changed = true;                           ///< `cell` or `neighbor` since the last solution
   std::vector<double> rhs, solution;             ///< 1/s, Pa
   std::vector<double> change;                    ///< Pa, in which direction the solution is looked for first
 
@@ -44,6 +45,7 @@ struct PressureSystem {
 
   void resize() {
     const std::size_t rows = cell.size();
+    changed = changed || rhs.size() != rows;
     matrix.resize(rows);
     for (auto& side : neighbor) side.resize(rows);
     for (auto* v : {&rhs, &solution, &change}) v->resize(rows);
