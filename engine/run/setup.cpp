@@ -152,7 +152,8 @@ void wish_large_pages_if_full(State<D>& s) {
   const double active = static_cast<double>(s.blocks.count()) * Blocks<D>::kCells;
   if (active < kFull * static_cast<double>(s.grid.count())) return;
   for (int d = 0; d < D; ++d)
-    wish_large_pages(s.sums[d]), wish_large_pages(s.flow[d]), wish_large_pages(s.speeds[d]);
+    wish_large_pages(s.sums[d]), wish_large_pages(s.flow[d]), wish_large_pages(s.speeds[d]),
+        wish_large_pages(s.flux[d]), wish_large_pages(s.flux_response[d]);
   wish_large_pages(s.cell_sums), wish_large_pages(s.cell);
 }
 
@@ -177,6 +178,8 @@ State<D> make_state(const Scene& scene) {
     s.image[d] = Field<FaceImage>(s.grid.count());
     s.flow[d] = Field<FaceFlow>(s.grid.count());
     s.rest[d] = Field<FaceRest>(s.grid.count());
+    s.flux[d] = Field<double>(s.grid.count());
+    s.flux_response[d] = Field<double>(s.grid.count());
     s.speeds[d] = Field<FaceSpeeds>(s.grid.count());
     if (s.constants.kernel == Kernel::linear) s.follower[d] = Field<Follower>(s.grid.count());
   }

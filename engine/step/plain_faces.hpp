@@ -49,6 +49,11 @@ QUICKSAND_INLINE void put_speeds(Field<FaceSpeeds>& speeds, const FaceRows& rows
     put_lanes<4>(speeds[rows.face(k)].soil_old, __builtin_shufflevector(by_face[k], by_face[k], 0, 1, 2, 3));
 }
 
+QUICKSAND_INLINE void put_rows(Field<double>& field, const FaceRows& rows, const BatchLanes& v) {
+  put_lanes<4>(field[rows.first], __builtin_shufflevector(v, v, 0, 1, 2, 3));
+  put_lanes<4>(field[rows.second], __builtin_shufflevector(v, v, 4, 5, 6, 7));
+}
+
 /// viscous_acceleration, m/s².
 template <int D>
 QUICKSAND_INLINE BatchLanes viscous_in_lanes(const State<D>& s, int d, const FaceRows& rows,
@@ -129,6 +134,8 @@ QUICKSAND_INLINE void predict_wet(State<D>& s, int d, const FaceRows& rows, doub
   put_speeds(s.speeds[d], rows, {soil_old, soil_v, water_old, water_v});
   const std::array<BatchLanes, 8> flow =
       transposed({soil_response, water_response, phi, n, exchange, exchange_response, viscous, none});
+  put_rows(s.flux[d], rows, phi * soil_v + n * water_v);
+  put_rows(s.flux_response[d], rows, phi * soil_response + n * water_response);
   for (int k = 0; k < 8; ++k) {
     const int face = rows.face(k);
     put_lanes<8>(s.flow[d][face].soil_response, flow[k]);

@@ -42,6 +42,8 @@ void hold_row(State<D>& s, const Plate<D>& plate) {
     FaceFlow& f = s.flow[kAlong][face];
     s.speeds[kAlong][face].soil = s.speeds[kAlong][face].water = plate.speed;
     f.soil_response = f.water_response = 0;
+    s.flux[kAlong][face] = f.flux(s.speeds[kAlong][face]);
+    s.flux_response[kAlong][face] = 0;
     f.exchange = f.exchange_response = f.viscous = 0;
     if (!s.keeps_rest()) continue;
     FaceRest& rest = s.rest[kAlong][face];

@@ -123,55 +123,87 @@ double last_change(const State<D>& s, int cell) {
   return before == 0 ? 0 : s.pressure[cell] - before;
 }
 
-/// About an axis a row is the balance of its cell per radian, so that the matrix stays symmetric: storage and
-/// drift times the cell's radius, fluxes times their face's.
-/// Returns whether the row's neighbours are others than before.
-template <int D, bool kAxial>
-bool assemble_row(State<D>& s, PressureSystem<D>& m, int i, double dt) {
-  const double inverse_h = s.grid.inverse_h, inverse_h2 = inverse_h * inverse_h;
-  const CellState& c = s.cell[i];
-  const std::size_t r = c.row - 1;
-  const double radius = kAxial ? s.grid.cell_radius(i) : 1;
-  const double storage = radius * c.n * s.constants.water_compliance / dt;
-  double diagonal = storage;
-  double rhs = storage * s.pressure[i] + radius * drift_rate(s, i);
-  bool changed = false;
-  const auto couple = [&](int d, int side, int neighbor, double beta) {
-    changed = changed || m.neighbor[2 * d + side][r] != neighbor;
-    m.neighbor[2 * d + side][r] = neighbor;
-    m.matrix.coupling[2 * d + side][r] = beta;
-  };
-  for (int d = 0; d < D; ++d)
-    for (int side : {0, 1}) {
-      const int face = i + side * s.grid.stride[d], other = i + (2 * side - 1) * s.grid.stride[d];
-      if (s.water_walls.closed(d, face)) {
-        couple(d, side, -1, 0);
-        continue;
+/// Makes the row of a wet cell, which has it.
+template <int D>
+class RowMaker {
+ public:
+  RowMaker(const State<D>& s, PressureSystem<D>& m, double dt)
+      : s_(s), m_(m), storage_(s.constants.water_compliance / dt) {}
+
+  /// About an axis a row is the balance of its cell per radian, so that the matrix stays symmetric: storage
+  /// and drift times the cell's radius, fluxes times their face's.
+  template <bool axial>
+  void make(int i) {
+    const double radius = axial ? s_.grid.cell_radius(i) : 1;
+    start(i, radius);
+    for (int d = 0; d < D; ++d)
+      for (int side : {0, 1}) {
+        const int face = i + side * s_.grid.stride[d], other = i + (2 * side - 1) * s_.grid.stride[d];
+        if (s_.water_walls.closed(d, face))
+          couple(2 * d + side, -1, 0);
+        else
+          add_side(2 * d + side, face, s_.cell[i], s_.cell[other], axial ? s_.grid.face_radius(d, face) : 1);
       }
-      const FaceFlow& f = s.flow[d][face];
-      const double at = kAxial ? s.grid.face_radius(d, face) : 1;
-      rhs += (1 - 2 * side) * at * f.flux(s.speeds[d][face]) * inverse_h;
-      const double beta = at * f.flux_response() * inverse_h2;
-      const CellState& o = s.cell[other];
-      const Port<D>* port = port_at(s, d, face);
-      const bool inner = !port && o.wet();
-      couple(d, side, inner ? o.row - 1 : -1, inner ? beta : 0);
-      if (inner) {
-        diagonal += beta;
-      } else if (port) {
-        diagonal += 2 * beta;  // half a cell to the face
-        rhs += 2 * beta * port->pressure;
-      } else {
-        diagonal += beta / surface_distance(c.depth, o.depth);
+    finish(i);
+  }
+  /// The same in a plain block, where all sides are open and wet.
+  void make_plain(int i) {
+    start(i, 1);
+    for (int d = 0; d < D; ++d)
+      for (int side : {0, 1}) {
+        const int face = i + side * s_.grid.stride[d], other = i + (2 * side - 1) * s_.grid.stride[d];
+        const double beta = s_.flux_response[d][face] * per_area_;
+        rhs_ += (1 - 2 * side) * s_.flux[d][face] * s_.grid.inverse_h;
+        diagonal_ += beta;
+        couple(2 * d + side, s_.cell[other].row - 1, beta);
       }
+    finish(i);
+  }
+  bool changed() const { return changed_; }  ///< some row's neighbours are others than before
+
+ private:
+  void start(int i, double radius) {
+    row_ = s_.cell[i].row - 1;
+    diagonal_ = radius * s_.cell[i].n * storage_;
+    rhs_ = diagonal_ * s_.pressure[i] + radius * drift_rate(s_, i);
+  }
+  void couple(int side, int neighbor, double beta) {
+    changed_ = changed_ || m_.neighbor[side][row_] != neighbor;
+    m_.neighbor[side][row_] = neighbor;
+    m_.matrix.coupling[side][row_] = beta;
+  }
+  void add_side(int side, int face, const CellState& cell, const CellState& other, double at) {
+    const int d = side / 2;
+    rhs_ += (1 - 2 * (side % 2)) * at * s_.flux[d][face] * s_.grid.inverse_h;
+    const double beta = at * s_.flux_response[d][face] * per_area_;
+    const Port<D>* port = port_at(s_, d, face);
+    const bool inner = !port && other.wet();
+    couple(side, inner ? other.row - 1 : -1, inner ? beta : 0);
+    if (inner) {
+      diagonal_ += beta;
+    } else if (port) {
+      diagonal_ += 2 * beta;  // half a cell to the face
+      rhs_ += 2 * beta * port->pressure;
+    } else {
+      diagonal_ += beta / surface_distance(cell.depth, other.depth);
     }
-  if (diagonal <= 0) diagonal = 1, rhs = s.pressure[i];  // a closed cell of incompressible water: as it was
-  m.matrix.diagonal[r] = diagonal;
-  m.rhs[r] = rhs;
-  m.solution[r] = s.pressure[i];
-  m.change[r] = last_change(s, i);
-  return changed;
-}
+  }
+  void finish(int i) {
+    // A closed cell of incompressible water stays as it was.
+    if (diagonal_ <= 0) diagonal_ = 1, rhs_ = s_.pressure[i];
+    m_.matrix.diagonal[row_] = diagonal_;
+    m_.rhs[row_] = rhs_;
+    m_.solution[row_] = s_.pressure[i];
+    m_.change[row_] = last_change(s_, i);
+  }
+
+  const State<D>& s_;
+  PressureSystem<D>& m_;
+  const double storage_, per_area_ = s_.grid.inverse_h * s_.grid.inverse_h;  ///< 1/(Pa·s), 1/m²
+  std::size_t row_ = 0;
+  double diagonal_ = 0, rhs_ = 0;
+  bool changed_ = false;
+};
 
 template <int D>
 void assemble(State<D>& s, PressureSystem<D>& m, double dt) {
@@ -179,11 +211,14 @@ void assemble(State<D>& s, PressureSystem<D>& m, double dt) {
   std::atomic<bool> changed = m.changed;
   with_axial(s.grid, [&](auto axial) {
     s.blocks.all([&](int b) {
-      bool differ = false;
+      RowMaker<D> rows(s, m, dt);
       s.blocks.cells(s.grid, b, false, [&](int i, const Cell<D>&) {
-        if (s.cell[i].wet()) differ = assemble_row<D, axial>(s, m, i, dt) || differ;
+        if (s.plain[b])
+          rows.make_plain(i);
+        else if (s.cell[i].wet())
+          rows.template make<axial>(i);
       });
-      if (differ) changed.store(true, std::memory_order_relaxed);
+      if (rows.changed()) changed.store(true, std::memory_order_relaxed);
     });
   });
   m.changed = changed;

@@ -273,6 +273,9 @@ struct State {
   std::array<Field<FaceSpeeds>, D> speeds;
   std::array<Field<FaceFlow>, D> flow;
   std::array<Field<FaceRest>, D> rest;
+  /// FaceFlow::flux as predicted, m/s, and flux_response, of wet faces: what the pressure system is made of,
+  /// close together in memory.
+  std::array<Field<double>, D> flux, flux_response;
   std::array<Field<FixedFace>, D> fixed_face;
   Field<CellSums> cell_sums;
   Field<CellSums> fixed_cell;

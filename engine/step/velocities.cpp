@@ -269,6 +269,10 @@ void predict_velocities(State<D>& s, double dt) {
           s.speeds[d][face] = f;
           if (keeps_flow) s.flow[d][face] = f;
           if (keeps_rest || f.soaked_side) s.rest[d][face] = f;
+          if (P::water && f.wet) {
+            s.flux[d][face] = f.flux(f);
+            s.flux_response[d][face] = f.flux_response();
+          }
         }
       });
     });
