@@ -30,6 +30,12 @@ std::string calibration_json(const Calibration& calibration) {
   for (std::size_t k = 0; k < kSceneKinds; ++k)
     json[kind_names[k]] = {{"step_seconds", calibration.cost[k].step},
                            {"point_seconds", calibration.cost[k].point}};
+  const OutputCost& output = calibration.output;
+  json["output"] = {{"start_seconds", output.start},
+                    {"seed_point_seconds", output.seed_point},
+                    {"frame_seconds", output.frame},
+                    {"frame_point_seconds", output.frame_point},
+                    {"flush_seconds", output.flush}};
   return json.dump(2) + "\n";
 }
 
@@ -42,6 +48,10 @@ Calibration read_calibration(const std::filesystem::path& file) {
     for (std::size_t k = 0; k < kSceneKinds; ++k)
       calibration.cost[k] = {json.at(kind_names[k]).at("step_seconds"),
                              json.at(kind_names[k]).at("point_seconds")};
+    if (const auto output = json.find("output"); output != json.end())  // not in older files
+      calibration.output = {output->at("start_seconds"), output->at("seed_point_seconds"),
+                            output->at("frame_seconds"), output->at("frame_point_seconds"),
+                            output->at("flush_seconds")};
   } catch (const nlohmann::json::exception&) {
     return {};
   }

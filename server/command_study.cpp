@@ -6,6 +6,7 @@
 
 #include "api/case_json.hpp"
 #include "engine/study/calibrate.hpp"
+#include "server/calibrate_output.hpp"
 #include "server/calibration_file.hpp"
 #include "server/commands.hpp"
 #include "server/files.hpp"
@@ -52,9 +53,11 @@ int tradeoff_command(const TradeoffCommand& command) {
 
 int calibrate_command(const std::string& state) {
   const std::filesystem::path file = state.empty() ? user_calibration() : state_calibration(state);
-  const Calibration measured = calibrate();
-  std::cout << calibration_json(measured);
   try {
+    Calibration measured;
+    measured.output = calibrate_output();  // first: it counts what the process has taken so far
+    measured.cost = calibrate().cost;
+    std::cout << calibration_json(measured);
     if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path());
     write_atomically(file, calibration_json(measured));
   } catch (const std::exception& error) {

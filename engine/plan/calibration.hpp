@@ -18,10 +18,17 @@ struct StepCost {
   double step = 0, point = 0;  ///< s
 };
 
+/// What a run takes besides its steps, s: opening and closing its file, seeding a point, a frame and a point
+/// in it, and making sure that what was written is on the disk.
+struct OutputCost {
+  double start = 0.03, seed_point = 2.3e-6, frame = 1.2e-3, frame_point = 0.75e-6, flush = 2.4e-3;
+};
+
 struct Calibration {
   /// By SceneKind; the defaults are those of one 2.6 GHz core (tests/bench/run, `quicksand calibrate`).
   std::array<StepCost, kSceneKinds> cost{
       {{8e-6, 125e-9}, {8e-6, 120e-9}, {17e-6, 135e-9}, {30e-6, 275e-9}, {15e-6, 215e-9}, {27e-6, 275e-9}}};
+  OutputCost output;
   double seconds(const Scene& scene, double steps, double points) const {
     const StepCost& c = cost[static_cast<std::size_t>(kind_of(scene))];
     return steps * (c.step + c.point * points);

@@ -19,11 +19,6 @@
 namespace quicksand {
 namespace {
 
-/// What a run takes besides its steps, measured on one 2.6 GHz core: opening and closing its file, seeding,
-/// each frame with its compression, and making sure that what was written is on the disk.
-constexpr double kStartSeconds = 0.045, kSeedSeconds = 2.3e-6, kFrameSeconds = 1.0e-3,
-                 kFramePointSeconds = 0.75e-6, kFlushSeconds = 2.4e-3;
-
 /// Steps that end on every sample and frame (Run::until_event): as many as the longer of the two intervals'
 /// parts needs.
 double steps_between_events(const Scene& scene, double duration, double dt) {
@@ -225,12 +220,13 @@ void add_companions(const Scene& scene, const Calibration& machine, Plan& plan) 
 
 }  // namespace
 
-double output_seconds(const Scene& scene, const Plan& plan, double end_time) {
+double output_seconds(const Scene& scene, const Plan& plan, double end_time, const Calibration& machine) {
+  const OutputCost& cost = machine.output;
   const double frames = 1 + std::ceil(end_time / scene.output.frame_interval);
   const double flushes = frames / (1 + frames_held(scene, plan.time_step, end_time));
   const auto points = static_cast<double>(plan.soil_points + plan.fixed_soil_points + plan.water_points);
-  return kStartSeconds + points * kSeedSeconds + frames * (kFrameSeconds + points * kFramePointSeconds) +
-         flushes * kFlushSeconds;
+  return cost.start + points * cost.seed_point + frames * (cost.frame + points * cost.frame_point) +
+         flushes * cost.flush;
 }
 
 Plan make_plan(const Scene& scene, const Calibration& machine) {
@@ -264,7 +260,7 @@ Plan make_plan(const Scene& scene, const Calibration& machine) {
   }
   plan.seconds =
       machine.seconds(scene, plan.steps, static_cast<double>(plan.soil_points + plan.water_points));
-  plan.seconds += output_seconds(scene, plan, plan.end_time);
+  plan.seconds += output_seconds(scene, plan, plan.end_time, machine);
   plan.memory_bytes =
       peak_memory(memory, frames_held(scene, plan.time_step, plan.end_time), plan.seconds > kFirstCheckpoint);
   add_companions(scene, machine, plan);

@@ -48,7 +48,7 @@ struct Plan {
 };
 
 /// Estimated seconds of a run that ends at `end_time` (s) besides its steps: its file and frames.
-double output_seconds(const Scene& scene, const Plan& plan, double end_time);
+double output_seconds(const Scene& scene, const Plan& plan, double end_time, const Calibration& machine);
 
 /// Requires `check(scene)` to be empty.
 Plan make_plan(const Scene& scene, const Calibration& machine = {});

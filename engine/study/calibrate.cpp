@@ -9,7 +9,6 @@ namespace quicksand {
 
 namespace {
 
-/// A bed of `across` cells along each side, its upper half the water if there is both.
 Scene bed(SceneKind kind, int across) {
   const bool space = kind >= SceneKind::soil_space;
   const SceneKind plane = space ? static_cast<SceneKind>(static_cast<int>(kind) - 3) : kind;
@@ -76,6 +75,15 @@ Sample time_steps(Scene scene, double point_steps) {
 }
 
 }  // namespace
+
+Scene calibration_scene(SceneKind kind, int across, long steps, int frames) {
+  Scene s = bed(kind, across);
+  s.name = "calibration";
+  s.stages[0].duration = static_cast<double>(steps) * *s.numerics.time_step;
+  s.output.series_interval = s.stages[0].duration;
+  s.output.frame_interval = s.stages[0].duration / (frames - 1);
+  return s;
+}
 
 Calibration calibrate(double effort) {
   Calibration calibration;

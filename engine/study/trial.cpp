@@ -8,6 +8,7 @@
 #include "engine/run/event_times.hpp"
 #include "engine/run/run.hpp"
 #include "engine/scene/check.hpp"
+#include "engine/scene/text.hpp"
 #include "engine/study/cpu_time.hpp"
 #include "engine/study/history.hpp"
 
@@ -16,26 +17,32 @@ namespace {
 
 class TrialMonitor final : public RunMonitor {
  public:
-  TrialMonitor(Trial& trial, double longest, const std::function<bool()>& stopped)
-      : trial_(trial), longest_(longest), stopped_(stopped) {}
+  TrialMonitor(std::vector<Moment>& moments, double longest, const std::function<bool()>& stopped)
+      : moments_(moments), longest_(longest), stopped_(stopped) {}
   void situation(std::size_t stage, double time, const StepSituation& now) override {
-    if (trial_.moments.empty()) first_ = cpu_seconds();
-    auto& moments = trial_.moments;
-    while (!moments.empty() && moments.back().time >= time) moments.pop_back();  // the run was taken back
-    moments.push_back({stage, time, now});
-    last_ = cpu_seconds();
-    ++steps_;
+    while (!moments_.empty() && moments_.back().time >= time) moments_.pop_back();  // the run was taken back
+    moments_.push_back({stage, time, now});
+    begun_.push_back({time, cpu_seconds()});
   }
-  bool cancelled() override { return cpu_seconds() - created_ > longest_ || (stopped_ && stopped_()); }
-  /// s, of a step; the last one is not counted.
-  double per_step() const { return steps_ > 1 ? (last_ - first_) / static_cast<double>(steps_ - 1) : 0; }
+  bool cancelled() override { return seconds() > longest_ || was_stopped(); }
+  bool was_stopped() const { return stopped_ && stopped_(); }
   double seconds() const { return cpu_seconds() - created_; }
+  /// s, of a step in the mean of those begun up to `time`, five at least; the last one of all is not counted.
+  /// 0 if there are none.
+  double per_step(double time) const {
+    std::size_t steps = 0;
+    while (steps + 1 < begun_.size() && (begun_[steps].time <= time || steps < 5)) ++steps;
+    return steps ? (begun_[steps].clock - begun_[0].clock) / static_cast<double>(steps) : 0;
+  }
 
  private:
-  Trial& trial_;
-  double longest_, created_ = cpu_seconds(), first_ = 0, last_ = 0;
+  struct Begun {
+    double time, clock;  ///< s, simulated and of the processor
+  };
+  std::vector<Moment>& moments_;
+  std::vector<Begun> begun_;
+  double longest_, created_ = cpu_seconds();
   const std::function<bool()>& stopped_;
-  long steps_ = 0;
 };
 
 struct Choice {
@@ -135,28 +142,98 @@ Walk walk(const Trial& trial, const Scene& scene, double cells, double limits) {
 
 }  // namespace
 
+namespace {
+
+/// Whether a run comes to some steps within so many seconds.
+bool is_seen_within(double seconds, const Scene& scene, const Plan& plan, const Calibration& machine) {
+  constexpr double some = 10;
+  const double points = count_of(plan) + static_cast<double>(plan.fixed_soil_points);
+  return points * machine.output.seed_point + machine.seconds(scene, some, count_of(plan)) < seconds;
+}
+
+/// The scene without its companions, and without its frames where samples are taken at the same times: what
+/// frames cost is told apart (output_seconds).
+Scene bare(Scene scene) {
+  scene.numerics.error_estimate = ErrorEstimate::none;
+  Output& output = scene.output;
+  const double samples = output.frame_interval / output.series_interval;
+  double end = 0;
+  for (const Stage& stage : scene.stages) end += stage.duration;
+  if (std::abs(samples - std::round(samples)) < 1e-6 * samples)
+    output.frame_interval = std::max(end, output.frame_interval);
+  return scene;
+}
+
+/// One run of a trial.
+struct Attempt {
+  Trial trial;
+  TrialMonitor monitor;
+  RunReport report;
+  bool stopped = false;  ///< by the caller
+
+  Attempt(const Scene& scene, const Plan& plan, double longest, const std::function<bool()>& stop)
+      : monitor(trial.moments, longest, stop) {
+    HistorySink nowhere;
+    report = run(scene, nowhere, monitor, {1});
+    stopped = monitor.was_stopped();
+    trial.figures = {plan.cell_size, report.steps, monitor.seconds(),
+                     report.status == RunStatus::succeeded ? 1 : report.sim_time / plan.end_time};
+    trial.soil_limit = soil_limit(plan);
+    trial.durations = durations_of(trial, report);
+  }
+  bool failed() const { return report.status == RunStatus::failed || trial.moments.empty(); }
+  bool is_whole() const { return report.status == RunStatus::succeeded; }
+  double per_step(double time = std::numeric_limits<double>::infinity()) const {
+    return monitor.per_step(time);
+  }
+};
+
+/// Seconds of `steps` steps of a scene: by what they took in the trial on the scene's cells, by two sizes, or
+/// by the calibration and what one size took.
+double seconds_of(const Trial& trial, const Scene& scene, const Calibration& machine, double steps,
+                  double points) {
+  const Pace &own = trial.own, &larger = trial.larger;
+  if (own.step > 0 && larger.step > 0 && own.points > larger.points) {
+    double point = std::max(0.0, (own.step - larger.step) / (own.points - larger.points));
+    point = std::min(point, own.step / own.points);  // a step does not take less than nothing
+    return steps * (own.step + point * (points - own.points));
+  }
+  const Pace& one = own.step > 0 ? own : larger;
+  const double dearness = one.step > 0 ? one.step / machine.seconds(scene, 1, one.points) : 1;
+  return dearness * machine.seconds(scene, steps, points);
+}
+
+}  // namespace
+
 Trial make_trial(const Scene& scene, const Calibration& machine, double budget,
                  const std::function<bool()>& stopped) {
-  Trial trial;
-  const auto choice = on_larger_cells(scene, machine, budget);
+  const double half = 0.5 * budget;
+  const Scene itself = bare(scene);
+  const Plan plan = make_plan(itself, machine);
+  std::optional<Attempt> own;
+  if (is_seen_within(half, itself, plan, machine)) own.emplace(itself, plan, half, stopped);
+  if (own && !own->failed() && (own->is_whole() || own->stopped)) {
+    own->trial.own = {count_of(plan), own->per_step()};
+    own->trial.is_whole = own->is_whole();
+    return own->trial;
+  }
+  const auto choice = on_larger_cells(scene, machine, half);
   if (!choice) {
-    trial.missing = "no larger cells fit the scene and take at most " + std::to_string(budget) + " s";
+    Trial none;
+    none.missing = "no larger cells fit the scene and take at most " + text(half) + " s";
+    return none;
+  }
+  Attempt larger(choice->scene, choice->plan, 2 * half, stopped);
+  Trial& trial = larger.trial;
+  if (larger.failed()) {
+    trial.missing = "a run on cells of " + text(choice->plan.cell_size) + " m failed";
     return trial;
   }
-  TrialMonitor monitor(trial, 2 * budget, stopped);
-  HistorySink nowhere;
-  const RunReport report = run(choice->scene, nowhere, monitor, {1});
-  if (report.status == RunStatus::failed || trial.moments.empty()) {
-    trial.missing = "a run on cells of " + std::to_string(choice->plan.cell_size) + " m failed";
-    return trial;
-  }
-  const double whole = choice->plan.end_time;
-  trial.figures = {choice->plan.cell_size, report.steps, monitor.seconds(),
-                   report.status == RunStatus::succeeded ? 1 : report.sim_time / whole};
-  trial.soil_limit = soil_limit(choice->plan);
-  trial.durations = durations_of(trial, report);
-  const double expected = machine.seconds(scene, 1, count_of(choice->plan));
-  if (monitor.per_step() > 0) trial.dearness = monitor.per_step() / expected;
+  trial.larger = {count_of(choice->plan), larger.per_step()};
+  if (!own || own->failed()) return trial;
+  trial.figures.seconds += own->monitor.seconds();
+  const double begin = larger.per_step(own->report.sim_time);
+  if (begin > 0) trial.own = {count_of(plan), own->per_step() * trial.larger.step / begin};
   return trial;
 }
 
@@ -167,11 +244,13 @@ void foretell(const Trial& trial, const Scene& scene, const Calibration& machine
   }
   const double cells = plan.cell_size / trial.figures.cell_size;
   const double limits = std::isfinite(trial.soil_limit) ? soil_limit(plan) / trial.soil_limit : cells;
-  const Walk foretold = walk(trial, scene, cells, limits);
+  Walk foretold = walk(trial, scene, cells, limits);
+  if (trial.is_whole && cells == 1) foretold.steps = static_cast<double>(trial.figures.steps);
   const double points = count_of(plan);
-  plan.seconds += trial.dearness * machine.seconds(scene, foretold.steps, points) -
-                  machine.seconds(scene, plan.steps, points) + output_seconds(scene, plan, foretold.end) -
-                  output_seconds(scene, plan, plan.end_time);
+  plan.seconds += seconds_of(trial, scene, machine, foretold.steps, points) -
+                  machine.seconds(scene, plan.steps, points) +
+                  output_seconds(scene, plan, foretold.end, machine) -
+                  output_seconds(scene, plan, plan.end_time, machine);
   plan.steps = foretold.steps;
   plan.trial = trial.figures;
 }
