@@ -61,7 +61,8 @@ void add_local_commands(CLI::App& app, CommandLine& line) {
   add_preset(check, line.check_preset);
   check
       ->add_option("--trial", line.trial_seconds,
-                   "s for a run on larger cells, by which steps and seconds are foretold; 0: none")
+                   "s for a trial: the case for a while, then on larger cells to its end; steps and seconds "
+                   "follow it; 0: none")
       ->capture_default_str()
       ->check(CLI::Range(0.0, 3600.0));
   check->callback(

@@ -19,7 +19,8 @@ struct StepBound {
   double seconds = 0;
 };
 
-/// A short run of the same scene on larger cells, by which steps and seconds were foretold (study/trial.hpp).
+/// A short run of the same scene, on its own cells or larger ones, by which steps and seconds were foretold
+/// (study/trial.hpp).
 struct TrialFigures {
   double cell_size = 0;  ///< m
   long steps = 0;

@@ -11,6 +11,8 @@ namespace {
 /// Levels are added until one has at most this many rows, which a few sweeps solve.
 constexpr std::size_t kFewRows = 16;
 constexpr int kLastSweeps = 4;
+/// Coarse levels of no more rows are gone through once.
+constexpr std::size_t kOnce = 1000;
 /// Rows of a run at most, so that threads find parts of it.
 constexpr int kLongestRun = 1024;
 
@@ -253,14 +255,15 @@ void Multigrid<D>::start(Level& level, std::size_t begin, std::size_t end) {
   for (std::size_t r = middle; r < end; ++r) level.x[r] = 0;
 }
 
-/// What the first relaxation of both colours leaves over: of even rows what came from the odd ones since, of
-/// these nothing. The coarse level starts with it.
+/// b − A x, of which odd rows have nothing, as they were relaxed last. The coarse level starts with it.
 template <int D>
 void Multigrid<D>::restrict_to(Level& coarse, Level& fine) {
   for_runs(fine, 0, [&](const Run& run) {
     const Sides<kSides> sides(*fine.matrix, run, fine.x.data());
     double* __restrict left = fine.left.data() + run.first;
-    for (int i = 0; i < run.count; ++i) left[i] = sides.sum(i);
+    const double *b = fine.b.data() + run.first, *diagonal = fine.matrix->diagonal.data() + run.first,
+                 *x = fine.x.data() + run.first;
+    for (int i = 0; i < run.count; ++i) left[i] = b[i] - diagonal[i] * x[i] + sides.sum(i);
   });
   for_chunks(coarse.rows(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t r = begin; r < end; ++r) {
@@ -280,19 +283,24 @@ void Multigrid<D>::solve_last(Level& level) {
   for (int i = 0; i < kLastSweeps; ++i) relax(level, 1), relax(level, 0);
 }
 
-/// On a level that has started.
+/// On a level that has started. Coarse levels of many rows are gone through twice: with prolongation by
+/// copies one pass solves them too badly for the level above.
 template <int D>
 void Multigrid<D>::cycle(std::size_t k) {
   Level& level = levels_[k];
   if (k + 1 == levels_.size()) return solve_last(level);
   Level& coarse = levels_[k + 1];
-  relax(level, 1);
-  restrict_to(coarse, level);
-  cycle(k + 1);
-  for_chunks(level.even, [&](std::size_t begin, std::size_t end) {  // odd rows follow from these
-    for (std::size_t r = begin; r < end; ++r) level.x[r] += coarse.x[level.parent[r]];
-  });
-  relax(level, 1), relax(level, 0);
+  const int times = k > 0 && level.rows() > kOnce ? 2 : 1;
+  for (int time = 0; time < times;
+       ++time) {  // even rows are relaxed: at the start, and at the end of the first
+    relax(level, 1);
+    restrict_to(coarse, level);
+    cycle(k + 1);
+    for_chunks(level.even, [&](std::size_t begin, std::size_t end) {  // odd rows follow from these
+      for (std::size_t r = begin; r < end; ++r) level.x[r] += coarse.x[level.parent[r]];
+    });
+    relax(level, 1), relax(level, 0);
+  }
 }
 
 template <int D>

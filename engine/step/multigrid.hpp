@@ -1,6 +1,6 @@
 #pragma once
-// Multigrid on the wet cells, one V-cycle as preconditioner of conjugate gradients: its iterations do not
-// grow with the grid.
+// Multigrid on the wet cells, one cycle as preconditioner of conjugate gradients: its iterations do not grow
+// with the grid. The finest level is gone through once, large coarse ones twice.
 //
 // A coarse row stands for the 2^D cells of a cube. Restriction adds their rows up, prolongation copies, both
 // of order one. So the coarse cells are cells of the same kind, twice as large: their coupling is the flux
@@ -25,7 +25,7 @@ class Multigrid {
   /// Coefficients of `m`, which has to stay while they are used; the levels' structure is that of before
   /// unless `m.changed`.
   void build(const Grid<D>& grid, const PressureSystem<D>& m);
-  /// out = one V-cycle on A out = in, from zero; returns in·out. Not const: works in the levels' own vectors,
+  /// out = one cycle on A out = in, from zero; returns in·out. Not const: works in the levels' own vectors,
   /// and `in` is theirs meanwhile.
   double apply(std::vector<double>& in, std::vector<double>& out);
   /// y = A x of the finest level; returns x·y.
