@@ -58,8 +58,9 @@ class WorkloadIn final : public Workload {
   StepReport<D> last_;
 };
 
-/// Steps before anything is measured: buffers have their sizes, the pressure its history.
-inline constexpr int kWarmUpSteps = 6;
+/// Steps before anything is measured: buffers have their sizes, the pressure its history, and asks for as
+/// many iterations as in the steps that follow.
+inline constexpr int kWarmUpSteps = 24;
 
 /// Whether dry scenes and those of water alone have instantiations of their own of the loops over faces
 /// (engine/step/scheme.hpp); `advance` chooses.
@@ -72,12 +73,12 @@ inline std::unique_ptr<Workload> start(const Scene& scene) {
 }
 
 /// A scene after some steps, with the memory that they took.
-inline std::unique_ptr<Workload> warm_up(const Scene& scene) {
+inline std::unique_ptr<Workload> warm_up(const Scene& scene, int steps = kWarmUpSteps) {
   const double before = resident_bytes();
   auto work = start(scene);
   resident_bytes();  // gives back what seeding left
   forget_peak();
-  for (int i = 0; i < kWarmUpSteps; ++i) work->step();
+  for (int i = 0; i < steps; ++i) work->step();
   work->resident = peak_bytes() - before;
   return work;
 }
