@@ -145,7 +145,7 @@ TEST(Calibrate, MeasuresEveryKindOfScene) {
     EXPECT_GT(measured.cost[k].point, usual.cost[k].point / 30) << k;
     EXPECT_LT(measured.cost[k].point, usual.cost[k].point * 100) << k;
     EXPECT_GE(measured.cost[k].step, 1e-7) << k;
-    EXPECT_LT(measured.cost[k].step, 1e-2) << k;
+    EXPECT_LT(measured.cost[k].step, 3e-2) << k;  // 0.01 with the sanitizers
   }
 }
 
