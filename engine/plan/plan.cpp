@@ -102,13 +102,12 @@ double peak_memory(const Memory& m, double held, bool has_checkpoints) {
 /// Points, at most, in a chunk of the result file, and how many copies of their places are made on its way.
 constexpr double kChunkPoints = 65536, kChunkCopies = 4;
 
-/// Of Frame's fields that are asked for.
-double frame_bytes_per_point(const Scene& scene, int stress) {
+/// Of Frame's fields that are asked for; all of them if none is named.
+double frame_bytes_per_point(const std::vector<std::string>& wanted, int stress) {
   const std::pair<const char*, int> fields[] = {
       {"displacement", 3},          {"velocity", 3},       {"porosity", 1}, {"pore_pressure", 1},
       {"effective_stress", stress}, {"plastic_strain", 1}, {"head", 1}};
   double bytes = 3 * sizeof(double) + sizeof(std::int32_t) + sizeof(std::uint8_t);
-  const auto& wanted = scene.output.fields;
   for (const auto& [name, components] : fields)
     if (wanted.empty() || std::find(wanted.begin(), wanted.end(), name) != wanted.end())
       bytes += components * sizeof(float);
@@ -174,7 +173,8 @@ Memory measure(const Scene& scene, Plan& plan) {
   const auto active = static_cast<double>(points.active_cells);
   const auto count = static_cast<double>(plan.soil_points + plan.fixed_soil_points + plan.water_points);
   return {points_bytes + per_active_cell * active + per_wet_cell * wet_cells + per_cell * grid.count(),
-          points_bytes + kept_per_active_cell * active, count * frame_bytes_per_point(scene, kStress<D>),
+          points_bytes + kept_per_active_cell * active,
+          count * frame_bytes_per_point(scene.output.fields, kStress<D>),
           kChunkCopies * std::min(count, kChunkPoints) * 3 * sizeof(double)};
 }
 
@@ -225,7 +225,9 @@ double output_seconds(const Scene& scene, const Plan& plan, double end_time, con
   const double frames = 1 + std::ceil(end_time / scene.output.frame_interval);
   const double flushes = frames / (1 + frames_held(scene, plan.time_step, end_time));
   const auto points = static_cast<double>(plan.soil_points + plan.fixed_soil_points + plan.water_points);
-  return cost.start + points * cost.seed_point + frames * (cost.frame + points * cost.frame_point) +
+  const int stress = plan.dimensions == 2 ? kStress<2> : kStress<3>;
+  const double part = frame_bytes_per_point(scene.output.fields, stress) / frame_bytes_per_point({}, stress);
+  return cost.start + points * cost.seed_point + frames * (cost.frame + points * part * cost.frame_point) +
          flushes * cost.flush;
 }
 

@@ -212,12 +212,14 @@ Trial make_trial(const Scene& scene, const Calibration& machine, double budget,
   const Plan plan = make_plan(itself, machine);
   std::optional<Attempt> own;
   if (is_seen_within(half, itself, plan, machine)) own.emplace(itself, plan, half, stopped);
-  if (own && !own->failed() && (own->is_whole() || own->stopped)) {
+  const bool seen = own && !own->failed();
+  if (seen) {
     own->trial.own = {count_of(plan), own->per_step()};
     own->trial.is_whole = own->is_whole();
-    return own->trial;
+    if (own->is_whole() || own->stopped) return own->trial;
   }
   const auto choice = on_larger_cells(scene, machine, half);
+  if (!choice && seen) return own->trial;  // better than nothing: what is left is taken to go on as it ended
   if (!choice) {
     Trial none;
     none.missing = "no larger cells fit the scene and take at most " + text(half) + " s";
@@ -225,12 +227,13 @@ Trial make_trial(const Scene& scene, const Calibration& machine, double budget,
   }
   Attempt larger(choice->scene, choice->plan, 2 * half, stopped);
   Trial& trial = larger.trial;
+  if (larger.failed() && seen) return own->trial;
   if (larger.failed()) {
     trial.missing = "a run on cells of " + text(choice->plan.cell_size) + " m failed";
     return trial;
   }
   trial.larger = {count_of(choice->plan), larger.per_step()};
-  if (!own || own->failed()) return trial;
+  if (!seen) return trial;
   trial.figures.seconds += own->monitor.seconds();
   const double begin = larger.per_step(own->report.sim_time);
   if (begin > 0) trial.own = {count_of(plan), own->per_step() * trial.larger.step / begin};
