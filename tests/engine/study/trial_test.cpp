@@ -24,7 +24,7 @@ Scene collapse() {
 double steps_of(const Scene& s) { return static_cast<double>(test::record(s, 1).report.steps); }
 
 /// The plan after a trial of at most `budget` seconds.
-Plan foretold(const Scene& s, double budget = 10) {
+Plan foretold(const Scene& s, double budget = 200) {
   Plan plan = make_plan(s);
   foretell(make_trial(s, {}, budget), s, {}, plan);
   return plan;
@@ -36,7 +36,7 @@ TEST(Trial, TellsStepsOfAFlowThatSpeedsUp) {
   EXPECT_LT(make_plan(s).steps, 0.7 * steps);
   const Plan plan = foretold(s);
   ASSERT_TRUE(plan.trial);
-  EXPECT_EQ(plan.trial->cell_size, 0.02);  // all of it in five seconds
+  EXPECT_EQ(plan.trial->cell_size, 0.02);  // all of it, in much less than the budget
   EXPECT_EQ(plan.trial->fraction, 1);
   EXPECT_EQ(plan.steps, steps);
 }
@@ -51,8 +51,8 @@ TEST(Trial, OnLargerCellsTellsTheSteps) {
   foretell(trial, s, {}, plan);
   ASSERT_TRUE(plan.trial);
   EXPECT_GE(plan.trial->cell_size, 2 * s.cell_size());
-  EXPECT_GT(trial.larger.step, 0);
   if (plan.trial->fraction == 1) {  // not where a sanitizer slows it down
+    EXPECT_GT(trial.larger.step, 0);
     EXPECT_NEAR(plan.steps / steps, 1, 0.2);
   }
 }
@@ -145,7 +145,7 @@ TEST(Calibrate, MeasuresEveryKindOfScene) {
     EXPECT_GT(measured.cost[k].point, usual.cost[k].point / 30) << k;
     EXPECT_LT(measured.cost[k].point, usual.cost[k].point * 100) << k;
     EXPECT_GE(measured.cost[k].step, 1e-7) << k;
-    EXPECT_LT(measured.cost[k].step, 3e-2) << k;  // 0.01 with the sanitizers
+    EXPECT_LT(measured.cost[k].step, 0.1) << k;  // 0.01 with the sanitizers
   }
 }
 
