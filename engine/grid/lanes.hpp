@@ -14,6 +14,13 @@
 /// file is compiled for.
 #define QUICKSAND_INLINE inline __attribute__((always_inline))
 
+/// Before a loop whose rounds do not depend on each other, whatever the compiler can see.
+#ifdef __clang__
+#define QUICKSAND_INDEPENDENT _Pragma("clang loop vectorize(assume_safety)")
+#else
+#define QUICKSAND_INDEPENDENT _Pragma("GCC ivdep")
+#endif
+
 namespace quicksand {
 
 template <int N>

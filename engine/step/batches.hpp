@@ -106,7 +106,10 @@ template <int D>
 class BatchWalk {
  public:
   BatchWalk(const Blocks<D>& blocks, const BlockList& list, int block)
-      : blocks_(blocks), list_(list), block_(block), begin_(&list.begin[block * std::size_t{blocks.kCells}]) {
+      : blocks_(blocks),
+        list_(list),
+        block_(block),
+        begin_(&list.begin[block * std::size_t{Blocks<D>::kCells}]) {
     at_ = begin_[0];
   }
   /// False when there are no more.

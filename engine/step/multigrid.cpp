@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "engine/grid/lanes.hpp"
 #include "engine/step/norms.hpp"
 #include "engine/threads/chunks.hpp"
 
@@ -127,8 +128,8 @@ void Multigrid<D>::relax(Level& level, int color) {
     const Sides<kSides> sides(*level.matrix, run, level.x.data());
     const double *b = level.b.data() + run.first, *inverse = level.inverse.data() + run.first;
     double* x = level.x.data() + run.first;
-#pragma GCC ivdep  // neighbours are of the other colour, or the row itself times 0
-    for (int i = 0; i < run.count; ++i) x[i] = (b[i] + sides.sum(i)) * inverse[i];
+    // Neighbours are of the other colour, or the row itself times 0.
+    QUICKSAND_INDEPENDENT for (int i = 0; i < run.count; ++i) x[i] = (b[i] + sides.sum(i)) * inverse[i];
   });
 }
 
