@@ -10,38 +10,19 @@
 #include "engine/study/calibrate.hpp"
 #include "engine/study/cpu_time.hpp"
 #include "server/execute.hpp"
+#include "server/temporary_folder.hpp"
 
 namespace quicksand {
 namespace {
 
 constexpr int kAllThreads = 0;  // output is written by a thread of its own
 
-/// Removed with what is in it.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "quicksand-calibrate-XXXXXX").string();
-    if (!mkdtemp(name.data())) throw std::runtime_error("cannot make a temporary folder");
-    path_ = name;
-  }
-  ~TemporaryFolder() {
-    std::error_code none;
-    std::filesystem::remove_all(path_, none);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
-
 /// s of processor time, the median of three runs of dry soil, `across` cells wide.
-double run_seconds(int across, long steps, int frames) {
+double run_seconds(const std::filesystem::path& in, int across, long steps, int frames) {
   const std::string text = resolved_case(calibration_scene(SceneKind::soil, across, steps, frames));
   std::array<double, 3> taken{};
   for (double& t : taken) {
-    const TemporaryFolder folder;
+    const TemporaryFolder folder(in);
     RunMonitor monitor;
     RunOptions options;
     options.threads = 1;
@@ -57,22 +38,22 @@ double run_seconds(int across, long steps, int frames) {
 
 }  // namespace
 
-OutputCost calibrate_output(double effort) {
+OutputCost calibrate_output(const std::filesystem::path& in, double effort) {
   const double process = cpu_seconds(kAllThreads);
   constexpr int few = 6, many = 60;  // cells
   constexpr int points_of_few = 4 * few * few, points_of_many = 4 * many * many;
-  constexpr long between_flushes = 128;  // steps between good states, RunOptions::good_every
-  constexpr double held = 4;             // frames that are written at once where they come closer
+  const long between_flushes = RunOptions{}.good_every;
+  constexpr double held = 4;  // frames that are written at once where they come closer
   const int frames = std::max(3, static_cast<int>(32 * effort));
   const long steps = between_flushes * (frames - 1);
-  const double plain = run_seconds(few, steps, 2), rare = run_seconds(few, steps, frames);
-  const double close_plain = run_seconds(few, frames, 2), close = run_seconds(few, frames, frames);
+  const double plain = run_seconds(in, few, steps, 2), rare = run_seconds(in, few, steps, frames);
+  const double close_plain = run_seconds(in, few, frames, 2), close = run_seconds(in, few, frames, frames);
   const double alone = std::max(0.0, (rare - plain) / (frames - 2));            // frame + flush
   const double together = std::max(0.0, (close - close_plain) / (frames - 2));  // frame + flush / held
   OutputCost cost;
   cost.flush = std::max(0.0, (alone - together) / (1 - 1 / held));
   cost.frame = std::max(0.0, alone - cost.flush);
-  const double large_plain = run_seconds(many, frames, 2), large = run_seconds(many, frames, frames);
+  const double large_plain = run_seconds(in, many, frames, 2), large = run_seconds(in, many, frames, frames);
   const double of_large = std::max(0.0, (large - large_plain) / (frames - 2));
   cost.frame_point = std::max(0.0, of_large - together) / (points_of_many - points_of_few);
   const double step = std::max(0.0, plain - close_plain) / static_cast<double>(steps - frames);

@@ -54,11 +54,11 @@ int tradeoff_command(const TradeoffCommand& command) {
 int calibrate_command(const std::string& state) {
   const std::filesystem::path file = state.empty() ? user_calibration() : state_calibration(state);
   try {
+    if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path());
     Calibration measured;
-    measured.output = calibrate_output();  // first: it counts what the process has taken so far
+    measured.output = calibrate_output(file.parent_path());  // first: it counts what the process has taken
     measured.cost = calibrate().cost;
     std::cout << calibration_json(measured);
-    if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path());
     write_atomically(file, calibration_json(measured));
   } catch (const std::exception& error) {
     std::cerr << file.string() << ": " << error.what() << '\n';

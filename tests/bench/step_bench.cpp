@@ -17,8 +17,8 @@
 namespace quicksand::bench {
 namespace {
 
-/// Steps of one measurement at least, so that no single one decides, and at most: few points take so long
-/// steps that after more of them another scene would be measured, in which much has yielded.
+/// Steps of one measurement at least, so that no single one decides, and at most: few points take long steps,
+/// and a step's cost follows the scene's course (tests/bench/README.md).
 constexpr double kFewestSteps = 3, kMostSteps = 40;
 /// Steps of a pair in domains of two sizes, of which the larger may be a hundred times slower.
 constexpr long kRoomSteps = 5;

@@ -59,13 +59,17 @@ TEST_F(CalibrationFile, MissingOrDamagedIsTheUsualMachine) {
 }
 
 TEST(CalibrateOutput, MeasuresFiles) {
-  const OutputCost cost = calibrate_output(0.2);
+  const OutputCost cost = calibrate_output(testing::TempDir(), 0.2);
   EXPECT_GT(cost.start, 1e-3);
   EXPECT_LT(cost.start, 10);
   EXPECT_GT(cost.frame + cost.flush, 1e-5);
   EXPECT_LT(cost.frame + cost.flush, 1);
   EXPECT_GE(cost.frame_point, 0);
   EXPECT_LT(cost.frame_point, 1e-4);
+}
+
+TEST(CalibrateOutput, SaysWhereItCannotWrite) {
+  EXPECT_THROW(calibrate_output("/nowhere", 0.2), std::runtime_error);
 }
 
 }  // namespace

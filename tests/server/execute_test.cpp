@@ -6,7 +6,7 @@
 #include "engine/run/engine_build.hpp"
 #include "server/files.hpp"
 #include "server/run_json.hpp"
-#include "tests/server/temporary_folder.hpp"
+#include "server/temporary_folder.hpp"
 
 namespace quicksand {
 namespace {

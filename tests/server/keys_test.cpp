@@ -5,7 +5,7 @@
 #include "server/access.hpp"
 #include "server/http_problem.hpp"
 #include "server/store.hpp"
-#include "tests/server/temporary_folder.hpp"
+#include "server/temporary_folder.hpp"
 
 namespace quicksand {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "server/files.hpp"
 #include "server/run_json.hpp"
-#include "tests/server/temporary_folder.hpp"
+#include "server/temporary_folder.hpp"
 
 namespace quicksand {
 namespace {

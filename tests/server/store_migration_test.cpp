@@ -7,7 +7,7 @@
 #include "server/keys.hpp"
 #include "server/sha256.hpp"
 #include "server/store.hpp"
-#include "tests/server/temporary_folder.hpp"
+#include "server/temporary_folder.hpp"
 
 namespace quicksand {
 namespace {

@@ -5,7 +5,7 @@
 #include <thread>
 
 #include "server/sha256.hpp"
-#include "tests/server/temporary_folder.hpp"
+#include "server/temporary_folder.hpp"
 
 namespace quicksand {
 namespace {

@@ -6,12 +6,13 @@
 
 namespace quicksand {
 
-/// An empty folder that is gone at the end of the test.
+/// An empty folder that is removed with all that is in it. Throws std::runtime_error if it cannot be made.
 class TemporaryFolder {
  public:
-  TemporaryFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "quicksand-test-XXXXXX").string();
-    if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder");
+  explicit TemporaryFolder(const std::filesystem::path& in = std::filesystem::temp_directory_path()) {
+    std::string name = (in / "quicksand-XXXXXX").string();  // mkdtemp puts letters in place of the X
+    if (::mkdtemp(name.data()) == nullptr)
+      throw std::runtime_error("cannot make a temporary folder in " + in.string());
     path_ = name;
   }
   ~TemporaryFolder() {
