@@ -5,8 +5,11 @@
 #include <filesystem>
 #include <stdexcept>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "api/case_json.hpp"
+#include "engine/run/frame.hpp"
 #include "engine/study/calibrate.hpp"
 #include "engine/study/cpu_time.hpp"
 #include "server/execute.hpp"
@@ -17,9 +20,13 @@ namespace {
 
 constexpr int kAllThreads = 0;  // output is written by a thread of its own
 
-/// s of processor time, the median of three runs of dry soil, `across` cells wide.
-double run_seconds(const std::filesystem::path& in, int across, long steps, int frames) {
-  const std::string text = resolved_case(calibration_scene(SceneKind::soil, across, steps, frames));
+/// s of processor time, the median of three runs of dry soil, `across` cells wide, with the named fields or
+/// all.
+double run_seconds(const std::filesystem::path& in, int across, long steps, int frames,
+                   std::vector<std::string> fields = {}) {
+  Scene scene = calibration_scene(SceneKind::soil, across, steps, frames);
+  scene.output.fields = std::move(fields);
+  const std::string text = resolved_case(scene);
   std::array<double, 3> taken{};
   for (double& t : taken) {
     const TemporaryFolder folder(in);
@@ -52,12 +59,15 @@ OutputCost calibrate_output(const std::filesystem::path& in, double effort) {
   const double together = std::max(0.0, (close - close_plain) / (frames - 2));  // frame + flush / held
   OutputCost cost;
   cost.flush = std::max(0.0, (alone - together) / (1 - 1 / held));
-  cost.frame = std::max(0.0, alone - cost.flush);
+  const double one_field = run_seconds(in, few, frames, frames, {frame_fields().front()});
+  const auto other_fields = static_cast<double>(frame_fields().size() - 1);
+  cost.field = std::max(0.0, (close - one_field) / (frames - 2) / other_fields);
+  cost.frame = std::max(0.0, alone - cost.flush - (1 + other_fields) * cost.field);
   const double large_plain = run_seconds(in, many, frames, 2), large = run_seconds(in, many, frames, frames);
   const double of_large = std::max(0.0, (large - large_plain) / (frames - 2));
   cost.frame_point = std::max(0.0, of_large - together) / (points_of_many - points_of_few);
   const double step = std::max(0.0, plain - close_plain) / static_cast<double>(steps - frames);
-  const double first = 2 * (cost.frame + cost.flush);  // frames of `close_plain`
+  const double first = 2 * alone;  // frames of `close_plain`
   cost.start = process + std::max(0.0, close_plain - first - frames * step - points_of_few * cost.seed_point);
   return cost;
 }

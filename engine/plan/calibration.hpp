@@ -18,10 +18,12 @@ struct StepCost {
   double step = 0, point = 0;  ///< s
 };
 
-/// What a run takes besides its steps, s: opening and closing its file, seeding a point, a frame and a point
-/// in it, and making sure that what was written is on the disk.
+/// What a run takes besides its steps, s: opening and closing its file, seeding a point, a frame without
+/// fields, each of its fields, a point in a frame of all fields, and making sure that what was written is on
+/// the disk.
 struct OutputCost {
-  double start = 0.03, seed_point = 2.3e-6, frame = 1.2e-3, frame_point = 0.75e-6, flush = 2.4e-3;
+  double start = 0.03, seed_point = 2.3e-6, frame = 0.3e-3, field = 0.13e-3, frame_point = 0.75e-6,
+         flush = 2.4e-3;
 };
 
 struct Calibration {

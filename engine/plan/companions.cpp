@@ -1,12 +1,32 @@
 #include "engine/plan/companions.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <initializer_list>
 
 #include "engine/scene/check.hpp"
+#include "engine/scene/check_parts.hpp"
+#include "engine/scene/region.hpp"
 
 namespace quicksand {
 namespace {
+
+/// Whether points, which fill whole parts of a cell, can end at this coordinate.
+bool points_end_at(const Scene& scene, std::size_t axis, double x) {
+  const double parts =
+      (x - scene.domain.min[axis]) / scene.cell_size() * static_cast<double>(scene.numerics.points_per_cell);
+  return std::abs(parts - std::round(parts)) < 1e-6;
+}
+
+/// Whether bodies reach as far on the other cells as they do on the scene's own. Where they do not, the runs
+/// differ by what was put in (a level by part of a cell) and not by how it was computed.
+bool holds_the_same_bodies(const Scene& scene, const Scene& other) {
+  for (const Body& body : scene.bodies)
+    for (std::size_t axis = 0; axis < axes(scene); ++axis)
+      for (const double x : square_sides(body.region, axis))
+        if (points_end_at(scene, axis, x) && !points_end_at(other, axis, x)) return false;
+  return true;
+}
 
 /// The first of the ratios with cells on which the scene can be run. Ratios nearer to 1 than 5/4 would divide
 /// the noise of a run by a small number; far ones leave the range in which errors follow a power of the
@@ -20,7 +40,7 @@ std::optional<Companion> on_other_cells(const Scene& scene, std::initializer_lis
   for (const double ratio : ratios) {
     companion.ratio = ratio;
     companion.scene.numerics.cell_size_factor = scene.numerics.cell_size_factor * ratio;
-    if (check(companion.scene).empty()) return companion;
+    if (check(companion.scene).empty() && holds_the_same_bodies(scene, companion.scene)) return companion;
   }
   return {};
 }
@@ -42,9 +62,10 @@ std::optional<Fault> no_companion(const Scene& scene) {
   const bool finer = scene.numerics.error_estimate == ErrorEstimate::finer;
   if (!finer && found.coarser) return {};
   return Fault{"/numerics/error_estimate",
-               finer ? "no finer cells fit the walls and sides: give true, or another domain.cell_size"
-                     : "no coarser cells fit the walls and sides: give \"finer\", or a smaller "
-                       "domain.cell_size"};
+               finer ? "no finer cells fit the walls, the sides and the ends of the bodies: give true, or "
+                       "another domain.cell_size"
+                     : "no coarser cells fit the walls, the sides and the ends of the bodies: give "
+                       "\"finer\", or a smaller domain.cell_size"};
 }
 
 }  // namespace quicksand

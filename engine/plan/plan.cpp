@@ -102,16 +102,22 @@ double peak_memory(const Memory& m, double held, bool has_checkpoints) {
 /// Points, at most, in a chunk of the result file, and how many copies of their places are made on its way.
 constexpr double kChunkPoints = 65536, kChunkCopies = 4;
 
-/// Of Frame's fields that are asked for; all of them if none is named.
-double frame_bytes_per_point(const std::vector<std::string>& wanted, int stress) {
+/// Frame's fields that are asked for, all of them if none is named, and what a point takes in a frame.
+struct FrameContent {
+  int fields = 0;
+  double bytes_per_point = 3 * sizeof(double) + sizeof(std::int32_t) + sizeof(std::uint8_t);
+};
+FrameContent frame_content(const std::vector<std::string>& wanted, int stress) {
   const std::pair<const char*, int> fields[] = {
       {"displacement", 3},          {"velocity", 3},       {"porosity", 1}, {"pore_pressure", 1},
       {"effective_stress", stress}, {"plastic_strain", 1}, {"head", 1}};
-  double bytes = 3 * sizeof(double) + sizeof(std::int32_t) + sizeof(std::uint8_t);
+  FrameContent content;
   for (const auto& [name, components] : fields)
-    if (wanted.empty() || std::find(wanted.begin(), wanted.end(), name) != wanted.end())
-      bytes += components * sizeof(float);
-  return bytes;
+    if (wanted.empty() || std::find(wanted.begin(), wanted.end(), name) != wanted.end()) {
+      ++content.fields;
+      content.bytes_per_point += components * sizeof(float);
+    }
+  return content;
 }
 
 /// Steps between two good states (RunOptions::good_every), and s before the first checkpoint.
@@ -174,7 +180,7 @@ Memory measure(const Scene& scene, Plan& plan) {
   const auto count = static_cast<double>(plan.soil_points + plan.fixed_soil_points + plan.water_points);
   return {points_bytes + per_active_cell * active + per_wet_cell * wet_cells + per_cell * grid.count(),
           points_bytes + kept_per_active_cell * active,
-          count * frame_bytes_per_point(scene.output.fields, kStress<D>),
+          count * frame_content(scene.output.fields, kStress<D>).bytes_per_point,
           kChunkCopies * std::min(count, kChunkPoints) * 3 * sizeof(double)};
 }
 
@@ -226,9 +232,10 @@ double output_seconds(const Scene& scene, const Plan& plan, double end_time, con
   const double flushes = frames / (1 + frames_held(scene, plan.time_step, end_time));
   const auto points = static_cast<double>(plan.soil_points + plan.fixed_soil_points + plan.water_points);
   const int stress = plan.dimensions == 2 ? kStress<2> : kStress<3>;
-  const double part = frame_bytes_per_point(scene.output.fields, stress) / frame_bytes_per_point({}, stress);
-  return cost.start + points * cost.seed_point + frames * (cost.frame + points * part * cost.frame_point) +
-         flushes * cost.flush;
+  const FrameContent content = frame_content(scene.output.fields, stress);
+  const double part = content.bytes_per_point / frame_content({}, stress).bytes_per_point;
+  const double frame = cost.frame + content.fields * cost.field + points * part * cost.frame_point;
+  return cost.start + points * cost.seed_point + frames * frame + flushes * cost.flush;
 }
 
 Plan make_plan(const Scene& scene, const Calibration& machine) {

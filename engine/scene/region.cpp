@@ -194,6 +194,17 @@ Region at_depth(Region region, double z) {
   return region;
 }
 
+std::vector<double> square_sides(const Region& region, std::size_t axis) {
+  std::vector<double> sides;
+  if (region.kind == Region::Kind::box) sides = {region.min[axis], region.max[axis]};
+  const auto& corners = region.vertices;
+  for (std::size_t k = 0; axis < 2 && k < corners.size(); ++k)
+    if (corners[k][axis] == corners[(k + 1) % corners.size()][axis]) sides.push_back(corners[k][axis]);
+  for (const Region& part : region.parts)
+    for (const double x : square_sides(part, axis)) sides.push_back(x);
+  return sides;
+}
+
 double area(const Region& region, double spacing) {
   const Bounds bounds = bounding_box(region);
   if (bounds.empty) return 0;

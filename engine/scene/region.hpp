@@ -33,6 +33,9 @@ Region at_depth(Region region, double z);
 /// spacing/size).
 double area(const Region& region, double spacing);
 
+/// Where sides of the region stand square to an axis: faces of boxes, edges of polygons.
+std::vector<double> square_sides(const Region& region, std::size_t axis);
+
 /// Number of edges to look at: 4 for a box or a disc, vertices of a polygon, sum of the parts.
 std::size_t edge_count(const Region& region);
 

@@ -71,6 +71,24 @@ TEST(Companions, AreOnCellsThatFit) {
   EXPECT_FALSE(companions(scene).coarser);
 }
 
+/// A bed that ends on half a cell would be half a part of a cell lower on cells twice as large.
+TEST(Companions, HoldTheSameBodies) {
+  Scene scene = test::plane(0.4, 0.6, 0.05, 0.02);
+  test::add_body(scene, "bed", BodyKind::saturated_soil, {0, 0, 0}, {0.4, 0.425, 0});
+  scene.numerics.error_estimate = ErrorEstimate::coarser;
+  EXPECT_FALSE(companions(scene).coarser);
+  const auto fault = no_companion(scene);
+  ASSERT_TRUE(fault);
+  EXPECT_NE(fault->detail.find("ends of the bodies"), std::string::npos) << fault->detail;
+  scene.numerics.error_estimate = ErrorEstimate::finer;
+  EXPECT_FALSE(companions(scene).coarser);
+  ASSERT_TRUE(companions(scene).finer);
+  EXPECT_EQ(companions(scene).finer->ratio, 0.5);
+  scene.numerics.error_estimate = ErrorEstimate::coarser;
+  scene.bodies[0].region.max[1] = 0.43;  // between points: rounded on every grid
+  EXPECT_TRUE(companions(scene).coarser);
+}
+
 TEST(ErrorEstimate, ComparesEveryBody) {
   const Scene scene = watched();
   HistorySink history;
