@@ -46,9 +46,12 @@ int leader_of(const State<D>& s, int d, int face);
 /// the water's speed.
 template <int D>
 void measure_fixed(State<D>& s);
-/// Water surface, room and volume drift → `cell`.
+/// Water surface, room and volume drift → `cell`; no pressure where no water is.
 template <int D>
 void find_surface(State<D>& s);
+/// Makes cells wet that hold too little water for it amid others that hold enough.
+template <int D>
+void close_gaps(State<D>& s);
 /// Blocks whose faces are worked out several at a time → `plain`.
 template <int D>
 void find_plain_blocks(State<D>& s);
@@ -200,10 +203,6 @@ inline constexpr double kMassCutoff = 1e-10;
 /// Smallest wet part of a face next to a wet cell; a flat surface gives more than 1/6.
 inline constexpr double kLeastWetPart = 0.1;
 
-/// A cell has pressure where the water surface lies at least this far (cells) above its centre: one that just
-/// touches the centre would make a stiff row and flicker by rounding. Below, the surface lies a little beyond
-/// the next centre instead.
-inline constexpr double kMinSurfaceDistance = 0.05;
 /// Part of the way from a wet cell's centre to that of an air cell where p = 0.
 inline double surface_distance(double depth_wet, double depth_air) {
   return std::max(kMinSurfaceDistance, depth_wet / (depth_wet - depth_air));

@@ -34,12 +34,12 @@ double speed_in(const State<D>& s, int cell) {
 }
 
 /// Largest part of a cell's width per second that drift may be fed back over, 1/s. Among grains it is slow
-/// (see above). Water alone may not stay compressed at rest either: a wave as long as the cell passes it in
-/// the meantime.
+/// (see above). Water alone may not stay compressed at rest either, and no gap may stay: a wave as long as
+/// the cell passes it in the meantime.
 template <int D>
 double drift_pace(const State<D>& s, int cell) {
   const double inverse_h = s.grid.inverse_h, passes = speed_in(s, cell) * inverse_h;
-  if (s.cell_sums[cell].grains > 0) return passes / kDriftCells;
+  if (s.cell_sums[cell].grains > 0 && !s.cell[cell].is_gap()) return passes / kDriftCells;
   return std::max(passes, cell_wave(s) * inverse_h);
 }
 

@@ -90,6 +90,11 @@ struct CellSums {
   double water = 0, grains = 0, soil_bulk = 0;  ///< m³, at the cell's centre
 };
 
+/// A cell has pressure where the water surface lies at least this far (cells) above its centre: one that just
+/// touches the centre would make a stiff row and flicker by rounding. Below, the surface lies a little beyond
+/// the next centre instead.
+inline constexpr double kMinSurfaceDistance = 0.05;
+
 struct CellState {
   double fill = 0;        ///< –, part of a kernel's volume below the water surface
   double depth = -1.5;    ///< cells from the water surface, positive in water, within ±1.5
@@ -98,6 +103,8 @@ struct CellState {
   int row = 0;            ///< 1 + row in the pressure system; 0: air or wall
   bool confined = false;  ///< wet, and no air in the cells around
   bool wet() const { return row > 0; }
+  /// Wet because water closes it in, not by what it holds (see close_gaps).
+  bool is_gap() const { return wet() && depth <= kMinSurfaceDistance; }
 };
 
 /// Counters of everything that is done to the state other than by the equations.

@@ -1,4 +1,5 @@
-// Where the water surface is, how much room cells have, and how far volumes have drifted.
+// Where the water surface is (see gaps.cpp for what is none), how much room cells have, and how far volumes
+// have drifted.
 
 #include <cmath>
 
@@ -43,14 +44,17 @@ void find_surface(State<D>& s) {
       c.fill = fill_of(sums.water / volume, sums.grains / volume, sums.soil_bulk / volume);
       c.depth = with_kernel(s.constants.kernel, [&](auto shape) { return depth_of_fill(shape, c.fill); });
       c.row = c.depth > kMinSurfaceDistance;
-      if (!c.wet()) s.pressure[i] = 0;
     });
   });
+  close_gaps(s);
   // Drift is measured only where no air is in reach of the kernel.
   s.blocks.all([&](int b) {
     s.blocks.cells(s.grid, b, false, [&](int i, const Cell<D>&) {
       CellState& c = s.cell[i];
-      if (!c.wet()) return;
+      if (!c.wet()) {
+        s.pressure[i] = 0;
+        return;
+      }
       const double excess = (s.cell_sums[i].water + s.cell_sums[i].grains) / s.volume.cell(i) - 1;
       c.confined = true;
       for (int d = 0; d < D; ++d)
