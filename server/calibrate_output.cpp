@@ -57,15 +57,25 @@ OutputCost calibrate_output(const std::filesystem::path& in, double effort) {
   const double close_plain = run_seconds(in, few, frames, 2), close = run_seconds(in, few, frames, frames);
   const double alone = std::max(0.0, (rare - plain) / (frames - 2));            // frame + flush
   const double together = std::max(0.0, (close - close_plain) / (frames - 2));  // frame + flush / held
+  // Of a frame with one field and with all, of few points and of many.
+  const std::string& one = frame_fields().front();
+  const double small = run_seconds(in, few, frames, frames, {one});
+  const double large_plain = run_seconds(in, many, frames, 2);
+  const double large_one = run_seconds(in, many, frames, frames, {one});
+  const double large = run_seconds(in, many, frames, frames);
+  const auto of_frame = [&](double with, double without) {
+    return std::max(0.0, (with - without) / (frames - 2));
+  };
+  constexpr int fields = 7, components = 14, of_one = 3;  // in the plane; displacement first
+  constexpr double points = points_of_many - points_of_few;
+  const double at_points = of_frame(large_one - small, large_plain - close_plain) / points;
+  const double at_points_of_all = of_frame(large - close, large_plain - close_plain) / points;
   OutputCost cost;
+  cost.component = std::max(0.0, at_points_of_all - at_points) / (components - of_one);
+  cost.frame_point = std::max(0.0, at_points - of_one * cost.component);
+  cost.field = of_frame(close, small) / (fields - 1);
   cost.flush = std::max(0.0, (alone - together) / (1 - 1 / held));
-  const double one_field = run_seconds(in, few, frames, frames, {frame_fields().front()});
-  const auto other_fields = static_cast<double>(frame_fields().size() - 1);
-  cost.field = std::max(0.0, (close - one_field) / (frames - 2) / other_fields);
-  cost.frame = std::max(0.0, alone - cost.flush - (1 + other_fields) * cost.field);
-  const double large_plain = run_seconds(in, many, frames, 2), large = run_seconds(in, many, frames, frames);
-  const double of_large = std::max(0.0, (large - large_plain) / (frames - 2));
-  cost.frame_point = std::max(0.0, of_large - together) / (points_of_many - points_of_few);
+  cost.frame = std::max(0.0, alone - cost.flush - fields * cost.field);
   const double step = std::max(0.0, plain - close_plain) / static_cast<double>(steps - frames);
   const double first = 2 * alone;  // frames of `close_plain`
   cost.start = process + std::max(0.0, close_plain - first - frames * step - points_of_few * cost.seed_point);

@@ -34,8 +34,9 @@ std::string calibration_json(const Calibration& calibration) {
   json["output"] = {{"start_seconds", output.start},
                     {"seed_point_seconds", output.seed_point},
                     {"frame_seconds", output.frame},
-                    {"field_seconds", output.field},
                     {"frame_point_seconds", output.frame_point},
+                    {"field_seconds", output.field},
+                    {"component_seconds", output.component},
                     {"flush_seconds", output.flush}};
   return json.dump(2) + "\n";
 }
@@ -51,8 +52,9 @@ Calibration read_calibration(const std::filesystem::path& file) {
                              json.at(kind_names[k]).at("point_seconds")};
     if (const auto output = json.find("output"); output != json.end())  // not in older files
       calibration.output = {output->at("start_seconds"), output->at("seed_point_seconds"),
-                            output->at("frame_seconds"), output->at("field_seconds"),
-                            output->at("frame_point_seconds"), output->at("flush_seconds")};
+                            output->at("frame_seconds"), output->at("frame_point_seconds"),
+                            output->at("field_seconds"), output->at("component_seconds"),
+                            output->at("flush_seconds")};
   } catch (const nlohmann::json::exception&) {
     return {};
   }

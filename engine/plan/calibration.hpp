@@ -19,11 +19,11 @@ struct StepCost {
 };
 
 /// What a run takes besides its steps, s: opening and closing its file, seeding a point, a frame without
-/// fields, each of its fields, a point in a frame of all fields, and making sure that what was written is on
-/// the disk.
+/// fields and a point in it, each of its fields and a component of it at a point, and making sure that what
+/// was written is on the disk.
 struct OutputCost {
-  double start = 0.03, seed_point = 2.3e-6, frame = 0.3e-3, field = 0.13e-3, frame_point = 0.75e-6,
-         flush = 2.4e-3;
+  double start = 0.03, seed_point = 1e-6, frame = 0.8e-3, frame_point = 0.5e-6, field = 0.13e-3,
+         component = 0.06e-6, flush = 1e-3;
 };
 
 struct Calibration {

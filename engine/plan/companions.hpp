@@ -12,7 +12,8 @@ struct Companion {
 };
 
 /// The scenes that `numerics.error_estimate` asks for; each absent when no cells of another size fit the
-/// walls, sides and gates (`check`) and let bodies end where they do on the scene's own cells. The nearest ratio to 2 or ½ that fits is taken.
+/// walls, sides and gates (`check`) and let bodies end where they do on the scene's own cells. The nearest
+/// ratio to 2 or ½ that fits is taken.
 struct Companions {
   std::optional<Companion> coarser, finer;
 };

@@ -87,16 +87,18 @@ double initial_fast_wave_limit(const Scene& scene, std::size_t stage, double h, 
 
 /// Bytes that a run takes at a time.
 struct Memory {
-  double arrays = 0;  ///< points, faces and cells
-  double saved = 0;   ///< the last good state; a checkpoint on its way to the disk is another one
-  double frame = 0;   ///< see Frame in engine/run/run.hpp
-  double chunks = 0;  ///< what the file's library takes to pack a frame
+  double arrays = 0;    ///< points, faces and cells
+  double saved = 0;     ///< the last good state; a checkpoint on its way to the disk is another one
+  double frame = 0;     ///< see Frame in engine/run/run.hpp
+  double chunks = 0;    ///< what the file's library takes to pack a frame
+  double vertices = 0;  ///< places of points in a frame, for readers that ask for them
 };
 
 /// Of a run of at least one step, whose frames are `held` until a good state follows them, and so are there
 /// together with its checkpoint, and packed one after the other.
 double peak_memory(const Memory& m, double held, bool has_checkpoints) {
-  return m.arrays + (has_checkpoints ? 2 : 1) * m.saved + (1 + held) * m.frame + (held > 0 ? m.chunks : 0);
+  return m.arrays + (has_checkpoints ? 2 : 1) * m.saved + (1 + held) * m.frame + (held > 0 ? m.chunks : 0) +
+         m.vertices;
 }
 
 /// Points, at most, in a chunk of the result file, and how many copies of their places are made on its way.
@@ -104,8 +106,11 @@ constexpr double kChunkPoints = 65536, kChunkCopies = 4;
 
 /// Frame's fields that are asked for, all of them if none is named, and what a point takes in a frame.
 struct FrameContent {
-  int fields = 0;
-  double bytes_per_point = 3 * sizeof(double) + sizeof(std::int32_t) + sizeof(std::uint8_t);
+  int fields = 0, components = 0;
+  double bytes_per_point() const {
+    constexpr double bare = 3 * sizeof(double) + sizeof(std::int32_t) + sizeof(std::uint8_t);
+    return bare + components * double{sizeof(float)};
+  }
 };
 FrameContent frame_content(const std::vector<std::string>& wanted, int stress) {
   const std::pair<const char*, int> fields[] = {
@@ -115,7 +120,7 @@ FrameContent frame_content(const std::vector<std::string>& wanted, int stress) {
   for (const auto& [name, components] : fields)
     if (wanted.empty() || std::find(wanted.begin(), wanted.end(), name) != wanted.end()) {
       ++content.fields;
-      content.bytes_per_point += components * sizeof(float);
+      content.components += components;
     }
   return content;
 }
@@ -180,8 +185,8 @@ Memory measure(const Scene& scene, Plan& plan) {
   const auto count = static_cast<double>(plan.soil_points + plan.fixed_soil_points + plan.water_points);
   return {points_bytes + per_active_cell * active + per_wet_cell * wet_cells + per_cell * grid.count(),
           points_bytes + kept_per_active_cell * active,
-          count * frame_content(scene.output.fields, kStress<D>).bytes_per_point,
-          kChunkCopies * std::min(count, kChunkPoints) * 3 * sizeof(double)};
+          count * frame_content(scene.output.fields, kStress<D>).bytes_per_point(),
+          kChunkCopies * std::min(count, kChunkPoints) * 3 * sizeof(double), count * sizeof(long long)};
 }
 
 void explain(const Scene& scene, Plan& plan) {
@@ -233,8 +238,8 @@ double output_seconds(const Scene& scene, const Plan& plan, double end_time, con
   const auto points = static_cast<double>(plan.soil_points + plan.fixed_soil_points + plan.water_points);
   const int stress = plan.dimensions == 2 ? kStress<2> : kStress<3>;
   const FrameContent content = frame_content(scene.output.fields, stress);
-  const double part = content.bytes_per_point / frame_content({}, stress).bytes_per_point;
-  const double frame = cost.frame + content.fields * cost.field + points * part * cost.frame_point;
+  const double frame = cost.frame + points * cost.frame_point + content.fields * cost.field +
+                       content.components * points * cost.component;
   return cost.start + points * cost.seed_point + frames * frame + flushes * cost.flush;
 }
 

@@ -79,9 +79,9 @@ Sample time_steps(Scene scene, double point_steps) {
 Scene calibration_scene(SceneKind kind, int across, long steps, int frames) {
   Scene s = bed(kind, across);
   s.name = "calibration";
+  for (Body& body : s.bodies) body.velocity = {0.02, 0.05, 0}, body.rotation_rate = 0.5;
   s.stages[0].duration = static_cast<double>(steps) * *s.numerics.time_step;
-  s.output.series_interval = s.stages[0].duration;
-  s.output.frame_interval = s.stages[0].duration / (frames - 1);
+  s.output.frame_interval = s.output.series_interval = s.stages[0].duration / (frames - 1);
   return s;
 }
 

@@ -27,7 +27,7 @@ class CalibrationFile : public testing::Test {
 TEST_F(CalibrationFile, ComesBackAsItWas) {
   Calibration kept;
   for (std::size_t k = 0; k < kSceneKinds; ++k) kept.cost[k] = {1e-6 * static_cast<double>(k + 1), 1e-7};
-  kept.output = {0.1, 2e-6, 3e-3, 7e-4, 4e-6, 5e-3};
+  kept.output = {0.1, 2e-6, 3e-3, 4e-6, 7e-4, 8e-8, 5e-3};
   write(calibration_json(kept));
   const Calibration read = read_calibration(file_);
   for (std::size_t k = 0; k < kSceneKinds; ++k) {
@@ -38,6 +38,7 @@ TEST_F(CalibrationFile, ComesBackAsItWas) {
   EXPECT_EQ(read.output.seed_point, 2e-6);
   EXPECT_EQ(read.output.frame, 3e-3);
   EXPECT_EQ(read.output.field, 7e-4);
+  EXPECT_EQ(read.output.component, 8e-8);
   EXPECT_EQ(read.output.frame_point, 4e-6);
   EXPECT_EQ(read.output.flush, 5e-3);
 }
@@ -67,6 +68,8 @@ TEST(CalibrateOutput, MeasuresFiles) {
   EXPECT_LT(cost.frame + cost.flush, 1);
   EXPECT_GE(cost.field, 0);
   EXPECT_LT(cost.field, 0.1);
+  EXPECT_GE(cost.component, 0);
+  EXPECT_LT(cost.component, 1e-5);
   EXPECT_GE(cost.frame_point, 0);
   EXPECT_LT(cost.frame_point, 1e-4);
 }
