@@ -94,11 +94,13 @@ struct Memory {
   double vertices = 0;  ///< places of points in a frame, for readers that ask for them
 };
 
-/// Of a run of at least one step, whose frames are `held` until a good state follows them, and so are there
-/// together with its checkpoint, and packed one after the other.
-double peak_memory(const Memory& m, double held, bool has_checkpoints) {
-  return m.arrays + (has_checkpoints ? 2 : 1) * m.saved + (1 + held) * m.frame + (held > 0 ? m.chunks : 0) +
-         m.vertices;
+constexpr double kMostTogether = 4;
+
+/// Of a run of at least one step, of whose frames so many wait `together` for a good state, and so are there
+/// with its checkpoint, and packed one after the other; where they come fast, one more is on its way.
+double peak_memory(const Memory& m, double together, bool has_checkpoints) {
+  const double frames = together + (together == kMostTogether ? 1 : 0);
+  return m.arrays + (has_checkpoints ? 2 : 1) * m.saved + frames * m.frame + m.chunks + m.vertices;
 }
 
 /// Points, at most, in a chunk of the result file, and how many copies of their places are made on its way.
@@ -128,13 +130,12 @@ FrameContent frame_content(const std::vector<std::string>& wanted, int stress) {
 /// Steps between two good states (RunOptions::good_every), and s before the first checkpoint.
 constexpr double kGoodEvery = 128, kFirstCheckpoint = 0.25;
 
-/// Frames that wait for a good state, besides the one that is being made: up to three more where they come
-/// closer together than good states do (Run::kHeldFrames), and no more than the run has after its first.
-double frames_held(const Scene& scene, double dt, double end_time) {
-  constexpr double most = 3;
+/// Frames that wait together for a good state: those between two of them, no more than Run::kHeldFrames
+/// allows and than the run has after its first.
+double frames_together(const Scene& scene, double dt, double end_time) {
   const double steps_between_frames = std::max(1.0, scene.output.frame_interval / dt);
-  const double others = std::ceil(end_time / scene.output.frame_interval) - 1;
-  return std::clamp(std::floor(kGoodEvery / steps_between_frames), 0.0, std::clamp(others, 0.0, most));
+  const double all = std::ceil(end_time / scene.output.frame_interval);
+  return std::clamp(std::floor(kGoodEvery / steps_between_frames), 1.0, std::clamp(all, 1.0, kMostTogether));
 }
 
 bool damps(const Scene& scene) {
@@ -234,7 +235,7 @@ void add_companions(const Scene& scene, const Calibration& machine, Plan& plan) 
 double output_seconds(const Scene& scene, const Plan& plan, double end_time, const Calibration& machine) {
   const OutputCost& cost = machine.output;
   const double frames = 1 + std::ceil(end_time / scene.output.frame_interval);
-  const double flushes = frames / (1 + frames_held(scene, plan.time_step, end_time));
+  const double flushes = frames / frames_together(scene, plan.time_step, end_time);
   const auto points = static_cast<double>(plan.soil_points + plan.fixed_soil_points + plan.water_points);
   const int stress = plan.dimensions == 2 ? kStress<2> : kStress<3>;
   const FrameContent content = frame_content(scene.output.fields, stress);
@@ -275,8 +276,11 @@ Plan make_plan(const Scene& scene, const Calibration& machine) {
   plan.seconds =
       machine.seconds(scene, plan.steps, static_cast<double>(plan.soil_points + plan.water_points));
   plan.seconds += output_seconds(scene, plan, plan.end_time, machine);
-  plan.memory_bytes =
-      peak_memory(memory, frames_held(scene, plan.time_step, plan.end_time), plan.seconds > kFirstCheckpoint);
+  const double together = frames_together(scene, plan.time_step, plan.end_time);
+  const bool fills_up =
+      together == kMostTogether && plan.end_time > kMostTogether * scene.output.frame_interval;
+  const bool has_good_states = plan.steps > kGoodEvery || fills_up;
+  plan.memory_bytes = peak_memory(memory, together, has_good_states && plan.seconds > kFirstCheckpoint);
   add_companions(scene, machine, plan);
   plan.kind = error_class(scene);
   plan.expected_error = expected_error(scene);
