@@ -241,7 +241,10 @@ def main():
     with h5py.File(arguments.result, "r") as file:
         case = json.loads(file["run/case_resolved"][()])
         frames = choose_frames(file, arguments.times, arguments.panels)
-        water, soil = Quantity(file, arguments.field), Quantity(file, arguments.soil)
+        kinds = {body["kind"] for body in case.get("bodies", [])}
+        # A phase that is not there needs no field.
+        water = Quantity(file, arguments.field if kinds - {"soil"} else arguments.soil)
+        soil = Quantity(file, arguments.soil if kinds - {"water"} else arguments.field)
         title = f"{case.get('name', '')} ({case.get('numerics', {}).get('preset', '')})"
         picture(file, frames, case, water, soil, arguments.series, title).savefig(arguments.out)
     print(arguments.out)

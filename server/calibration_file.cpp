@@ -31,12 +31,9 @@ std::string calibration_json(const Calibration& calibration) {
     json[kind_names[k]] = {{"step_seconds", calibration.cost[k].step},
                            {"point_seconds", calibration.cost[k].point}};
   const OutputCost& output = calibration.output;
-  json["output"] = {{"start_seconds", output.start},
-                    {"seed_point_seconds", output.seed_point},
-                    {"frame_seconds", output.frame},
-                    {"frame_point_seconds", output.frame_point},
-                    {"field_seconds", output.field},
-                    {"component_seconds", output.component},
+  json["output"] = {{"start_seconds", output.start}, {"seed_point_seconds", output.seed_point},
+                    {"frame_seconds", output.frame}, {"frame_point_seconds", output.frame_point},
+                    {"field_seconds", output.field}, {"component_seconds", output.component},
                     {"flush_seconds", output.flush}};
   return json.dump(2) + "\n";
 }
