@@ -168,8 +168,10 @@ class RowMaker {
     rhs_ = diagonal_ * s_.pressure[i] + radius * drift_rate(s_, i);
   }
   void couple(int side, int neighbor, double beta) {
-    changed_ = changed_ || m_.neighbor[side][row_] != neighbor;
-    m_.neighbor[side][row_] = neighbor;
+    if (int& known = m_.neighbor[side][row_]; known != neighbor) {  // rarely: what is not written stays clean
+      known = neighbor;
+      changed_ = true;
+    }
     m_.matrix.coupling[side][row_] = beta;
   }
   void add_side(int side, int face, const CellState& cell, const CellState& other, double at) {
