@@ -66,7 +66,8 @@ OutputCost calibrate_output(const std::filesystem::path& in, double effort) {
   const auto of_frame = [&](double with, double without) {
     return std::max(0.0, (with - without) / (frames - 2));
   };
-  constexpr int fields = 7, components = 14, of_one = 3;  // in the plane; displacement first
+  const auto fields = static_cast<double>(frame_fields().size());
+  constexpr int components = 14, of_one = 3;  // of all fields in the plane, of the first
   constexpr double points = points_of_many - points_of_few;
   const double at_points = of_frame(large_one - small, large_plain - close_plain) / points;
   const double at_points_of_all = of_frame(large - close, large_plain - close_plain) / points;

@@ -47,7 +47,9 @@ Calibration read_calibration(const std::filesystem::path& file) {
     for (std::size_t k = 0; k < kSceneKinds; ++k)
       calibration.cost[k] = {json.at(kind_names[k]).at("step_seconds"),
                              json.at(kind_names[k]).at("point_seconds")};
-    if (const auto output = json.find("output"); output != json.end())  // not in older files
+    // Of older versions, which told it otherwise or not at all, only the steps are taken.
+    if (const auto output = json.find("output");
+        output != json.end() && output->contains("component_seconds"))
       calibration.output = {output->at("start_seconds"), output->at("seed_point_seconds"),
                             output->at("frame_seconds"), output->at("frame_point_seconds"),
                             output->at("field_seconds"), output->at("component_seconds"),

@@ -87,20 +87,20 @@ double initial_fast_wave_limit(const Scene& scene, std::size_t stage, double h, 
 
 /// Bytes that a run takes at a time.
 struct Memory {
-  double arrays = 0;    ///< points, faces and cells
-  double saved = 0;     ///< the last good state; a checkpoint on its way to the disk is another one
-  double frame = 0;     ///< see Frame in engine/run/run.hpp
-  double chunks = 0;    ///< what the file's library takes to pack a frame
-  double vertices = 0;  ///< places of points in a frame, for readers that ask for them
+  double arrays = 0;  ///< points, faces and cells; the numbers of points that readers of the file ask for
+  double saved = 0;   ///< the last good state; a checkpoint on its way to the disk is another one
+  double frame = 0;   ///< see Frame in engine/run/run.hpp
+  double chunks = 0;  ///< what the file's library takes to pack a frame
 };
 
+/// Frames after which a good state is kept before its time (Run::kHeldFrames, and the one that fills up).
 constexpr double kMostTogether = 4;
 
 /// Of a run of at least one step, of whose frames so many wait `together` for a good state, and so are there
 /// with its checkpoint, and packed one after the other; where they come fast, one more is on its way.
 double peak_memory(const Memory& m, double together, bool has_checkpoints) {
   const double frames = together + (together == kMostTogether ? 1 : 0);
-  return m.arrays + (has_checkpoints ? 2 : 1) * m.saved + frames * m.frame + m.chunks + m.vertices;
+  return m.arrays + (has_checkpoints ? 2 : 1) * m.saved + frames * m.frame + m.chunks;
 }
 
 /// Points, at most, in a chunk of the result file, and how many copies of their places are made on its way.
@@ -184,10 +184,11 @@ Memory measure(const Scene& scene, Plan& plan) {
   const double wet_cells = static_cast<double>(plan.water_points) / power(scene.numerics.points_per_cell, D);
   const auto active = static_cast<double>(points.active_cells);
   const auto count = static_cast<double>(plan.soil_points + plan.fixed_soil_points + plan.water_points);
-  return {points_bytes + per_active_cell * active + per_wet_cell * wet_cells + per_cell * grid.count(),
+  return {points_bytes + per_active_cell * active + per_wet_cell * wet_cells + per_cell * grid.count() +
+              count * sizeof(long long),
           points_bytes + kept_per_active_cell * active,
           count * frame_content(scene.output.fields, kStress<D>).bytes_per_point(),
-          kChunkCopies * std::min(count, kChunkPoints) * 3 * sizeof(double), count * sizeof(long long)};
+          kChunkCopies * std::min(count, kChunkPoints) * 3 * sizeof(double)};
 }
 
 void explain(const Scene& scene, Plan& plan) {

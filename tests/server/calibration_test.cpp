@@ -46,7 +46,12 @@ TEST_F(CalibrationFile, ComesBackAsItWas) {
 TEST_F(CalibrationFile, OfAnEarlierVersionSaysNothingOfOutput) {
   Calibration kept;
   kept.cost[0].step = 7e-6;
+  kept.output.frame = 1;
   std::string text = calibration_json(kept);
+  const std::size_t name = text.find("component_seconds");
+  write(text.replace(name, 9, "unheard_of"));  // the version before told frames otherwise
+  EXPECT_EQ(read_calibration(file_).cost[0].step, 7e-6);
+  EXPECT_EQ(read_calibration(file_).output.frame, OutputCost{}.frame);
   text.erase(text.rfind(",", text.find("\"output\"")));
   write(text + "}");
   const Calibration read = read_calibration(file_);
