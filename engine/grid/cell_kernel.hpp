@@ -29,12 +29,12 @@ QUICKSAND_INLINE WindowNodes<n> in_window(const Nodes<m, BatchLanes>& nodes) {
   WindowNodes<n> out;
   const auto low = nodes.first < -0.5;
   const BatchLanes none{};
-  for (int i = 0; i < n; ++i) {
-    out.w[i] = where(low, i < m ? nodes.w[i < m ? i : 0] : none,
-                     i > 0 && i <= m ? nodes.w[i > 0 ? i - 1 : 0] : none);
-    out.dw[i] = where(low, i < m ? nodes.dw[i < m ? i : 0] : none,
-                      i > 0 && i <= m ? nodes.dw[i > 0 ? i - 1 : 0] : none);
-  }
+  each<n>([&](auto i) __attribute__((always_inline)) {
+    constexpr bool first = i<m, second = i> 0 && i <= m;  // which of the two may reach it
+    constexpr int a = first ? i : 0, b = second ? i - 1 : 0;
+    out.w[i] = where(low, first ? nodes.w[a] : none, second ? nodes.w[b] : none);
+    out.dw[i] = where(low, first ? nodes.dw[a] : none, second ? nodes.dw[b] : none);
+  });
   out.at = nodes.at;
   return out;
 }
@@ -48,12 +48,12 @@ struct CellKernel {
   /// x[d]: the places along axis d, in the cells `c`; beyond their edges counts as on them.
   QUICKSAND_INLINE void find(const Grid<D>& grid, const std::array<BatchLanes, D>& c,
                              const std::array<BatchLanes, D>& x) {
-    for (int d = 0; d < D; ++d) {
+    each<D>([&](auto d) __attribute__((always_inline)) {
       const BatchLanes xi = clamped<BatchLanes>((x[d] - grid.origin[d]) * grid.inverse_h - c[d], BatchLanes{},
                                                 all_lanes<BatchLanes>(1));
       face[d] = in_window<4>(Shape::template on_faces<BatchLanes>(xi));
       center[d] = in_window<3>(Shape::template on_centers<BatchLanes>(xi));
-    }
+    });
   }
 };
 
@@ -133,27 +133,27 @@ QUICKSAND_INLINE WindowSum<D> window_sum(const Kernel& kernel, const At& at, con
   const auto& other = kernel.center[axis_of(d, 1)];
   const auto& last = kernel.center[axis_of(d, D - 1)];
   WindowSum<D> sum;
-  for (int z = 0; z < CellWindow<D>::kLast; ++z) {
+  each<CellWindow<D>::kLast>([&](auto z) __attribute__((always_inline)) {
     WindowSum<D> plane;
-    for (int y = 0; y < 3; ++y) {
+    each<3>([&](auto y) __attribute__((always_inline)) {
       BatchLanes value{}, slope{};
-      for (int x = 0; x < 4; ++x) {
+      each<4>([&](auto x) __attribute__((always_inline)) {
         const auto v = at(x, y, z);
         value += own.w[x] * v;
         slope += second(own, x) * v;
-      }
+      });
       plane.value += other.w[y] * value;
       plane.slope[0] += other.w[y] * slope;
       plane.slope[1] += second(other, y) * value;
-    }
+    });
     if constexpr (D == 2) {
       sum = plane;
     } else {
       sum.value += last.w[z] * plane.value;
-      for (int k = 0; k < 2; ++k) sum.slope[k] += last.w[z] * plane.slope[k];
+      each<2>([&](auto k) __attribute__((always_inline)) { sum.slope[k] += last.w[z] * plane.slope[k]; });
       sum.slope[2] += second(last, z) * plane.value;
     }
-  }
+  });
   return sum;
 }
 
@@ -162,15 +162,18 @@ template <int d, int D, class Kernel, class At>
 QUICKSAND_INLINE BatchLanes window_value(const Kernel& kernel, const At& at) {
   const auto& last = kernel.center[axis_of(d, D - 1)];
   BatchLanes sum{};
-  for (int z = 0; z < CellWindow<D>::kLast; ++z) {
+  each<CellWindow<D>::kLast>([&](auto z) __attribute__((always_inline)) {
     BatchLanes plane{};
-    for (int y = 0; y < 3; ++y) {
+    each<3>([&](auto y) __attribute__((always_inline)) {
       BatchLanes row{};
-      for (int x = 0; x < 4; ++x) row += kernel.face[d].w[x] * at(x, y, z);
+      each<4>([&](auto x) __attribute__((always_inline)) { row += kernel.face[d].w[x] * at(x, y, z); });
       plane += kernel.center[axis_of(d, 1)].w[y] * row;
-    }
-    sum += D == 2 ? plane : last.w[z] * plane;
-  }
+    });
+    if constexpr (D == 2)
+      sum = plane;
+    else
+      sum += last.w[z] * plane;
+  });
   return sum;
 }
 

@@ -43,9 +43,9 @@ SoilState<D> lane_of(const SoilState<D, BatchLanes>& states, int k) {
 }
 template <int D>
 void set_lane(SoilState<D, BatchLanes>& states, int k, const SoilState<D>& one) {
-  for (std::size_t i = 0; i < one.stress.size(); ++i) states.stress[i][k] = one.stress[i];
-  states.plastic_strain[k] = one.plastic_strain;
-  states.preconsolidation[k] = one.preconsolidation;
+  for (std::size_t i = 0; i < one.stress.size(); ++i) set_lane(states.stress[i], k, one.stress[i]);
+  set_lane(states.plastic_strain, k, one.plastic_strain);
+  set_lane(states.preconsolidation, k, one.preconsolidation);
 }
 
 template <int D>

@@ -23,18 +23,24 @@ int MohrCoulombLaw::update_batch(SoilState<D, BatchLanes>& state, const Strain<D
       face.compliance * (s1 * (1 + peak.sin_phi) - s3 * (1 - peak.sin_phi) - 2 * peak.cos_phi * c);
   BatchLanes r1 = s1 - gamma * face.drop[0], r2 = s2 - gamma * face.drop[1], r3 = s3 - gamma * face.drop[2];
   auto returned = yields & (gamma > 0) & (r1 >= r2) & (r2 >= r3) & (r1 <= peak.tension);
-  if (peak.sin_phi > 0) returned &= r3 * peak.sin_phi <= peak.cos_phi * c;
+  if (peak.sin_phi > 0) returned = returned & (r3 * peak.sin_phi <= peak.cos_phi * c);
   state.plastic_strain += where(returned, gamma * face.shear, BatchLanes{});
 
-  MohrCoulomb now = peak;
-  for (int k = 0; k < count; ++k) {
-    if (!yields[k] || returned[k]) continue;
-    now.cohesion = c[k];
-    const MohrCoulombReturn r = return_map(now, elastic, {s1[k], s2[k], s3[k]});
-    if (r.region == YieldRegion::elastic) continue;
-    r1[k] = r.stress[0], r2[k] = r.stress[1], r3[k] = r.stress[2];
-    state.plastic_strain[k] += plastic_shear(r);
-    returned[k] = -1;
+  const unsigned left = bits_of(yields) & ~bits_of(returned) & first_bits(count);
+  if (left != 0) {
+    Kept<> k1 = r1, k2 = r2, k3 = r3, strained = state.plastic_strain, done = BatchLanes{};
+    MohrCoulomb now = peak;
+    for (int k = 0; k < count; ++k) {
+      if (!(left >> k & 1)) continue;
+      now.cohesion = c[k];
+      const MohrCoulombReturn r = return_map(now, elastic, {s1[k], s2[k], s3[k]});
+      if (r.region == YieldRegion::elastic) continue;
+      k1[k] = r.stress[0], k2[k] = r.stress[1], k3[k] = r.stress[2];
+      strained[k] += plastic_shear(r);
+      done[k] = 1;
+    }
+    r1 = k1.lanes(), r2 = k2.lanes(), r3 = k3.lanes(), state.plastic_strain = strained.lanes();
+    returned = returned | (done.lanes() > 0);
   }
   // Where two values are one, so are those that they return to.
   std::array<BatchLanes, 3> values;

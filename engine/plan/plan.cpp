@@ -164,7 +164,12 @@ Memory measure(const Scene& scene, Plan& plan) {
   const double per_water = affine + 3 * sizeof(Vec<D>) + sizeof(double) + sizeof(int) + 8;
   const double fixed = points.fixed ? D * sizeof(FixedFace) + sizeof(CellSums) : 0;
   const double rest = keeps_rest(scene, points.fixed > 0) ? sizeof(FaceRest) : 0;
+  const bool soil = points.soil + points.fixed > 0;
   const double flow = keeps_flow(scene, plan.has_water) ? sizeof(FaceFlow) : 0;
+  const double of_soil = sizeof(MassSum) + sizeof(ForceSum), of_water = sizeof(MassSum),
+               of_both = sizeof(RoomSum);
+  const double sums =
+      (soil ? of_soil : 0) + (plan.has_water ? of_water : 0) + (soil && plan.has_water ? of_both : 0);
   const double flux = plan.has_water ? 2 * sizeof(double) : 0;
   // What a step touches. Images lie beside walls only.
   // State::counts_room.
@@ -172,8 +177,8 @@ Memory measure(const Scene& scene, Plan& plan) {
   const double wet =
       (plan.has_water ? double{sizeof(CellState)} : 0) + (counts_room ? double{sizeof(CellSums)} : 0);
   const double pressures = plan.has_water ? sizeof(double) : 0;
-  const double per_active_cell = follower + fixed + wet + 3 * pressures +
-                                 D * (sizeof(FaceSums) + flow + flux + rest + sizeof(FaceSpeeds));
+  const double per_active_cell =
+      follower + fixed + wet + 3 * pressures + D * (sums + flow + flux + rest + sizeof(FaceSpeeds));
   const double kept_per_active_cell =  // of the last good state
       follower + wet + 2 * pressures + D * (flow + sizeof(FaceSpeeds) + 1);
   // Flags of walls, for water and for grains, and volumes about an axis.

@@ -55,10 +55,12 @@ class Blocks {
     for (int d = D - 1; d >= 0; --d) b = b * blocks_[d] + c[d] / kEdge;
     return b;
   }
-  /// Which block holds a cell, and where in it: place × kCells + number, x fastest.
+  /// Which block holds a cell, and where in it: place × kCells + number. Numbers count along y, then z, then
+  /// x: a scatter that writes rows along x finds the same rows again in the next cell, and not parts of two
+  /// that it has just written, for which a processor has to wait.
   int key_of(const Cell<D>& c) const {
     int at = 0;
-    for (int d = D - 1; d >= 0; --d) at = at * kEdge + c[d] % kEdge;
+    for (int d = 0; d < D; ++d) at = at * kEdge + c[kOrder[d]] % kEdge;
     return block_of(c) * kCells + at;
   }
   /// A block that is always active.
@@ -158,7 +160,7 @@ class Blocks {
   /// Cell k of an active block, in the order of BlockList::begin.
   Cell<D> cell(int number, int k) const {
     Cell<D> c = low_cell(active_[number]);
-    for (int d = 0; d < D; k /= kEdge, ++d) c[d] += k % kEdge;
+    for (int d = D - 1; d >= 0; k /= kEdge, --d) c[kOrder[d]] += k % kEdge;
     return c;
   }
 
@@ -222,6 +224,10 @@ class Blocks {
   }
 
  private:
+  /// Axes, the one along which numbers of cells grow fastest last.
+  static constexpr std::array<int, 3> kOrder =
+      D == 2 ? std::array<int, 3>{0, 1, 0} : std::array<int, 3>{0, 2, 1};
+
   Cell<D> low_cell(int block) const {
     Cell<D> low;
     for (int d = 0; d < D; block /= blocks_[d], ++d) low[d] = block % blocks_[d] * kEdge;

@@ -152,8 +152,8 @@ void wish_large_pages_if_full(State<D>& s) {
   const double active = static_cast<double>(s.blocks.count()) * Blocks<D>::kCells;
   if (active < kFull * static_cast<double>(s.grid.count())) return;
   for (int d = 0; d < D; ++d)
-    wish_large_pages(s.sums[d]), wish_large_pages(s.flow[d]), wish_large_pages(s.speeds[d]),
-        wish_large_pages(s.flux[d]), wish_large_pages(s.flux_response[d]);
+    s.sums[d].each([](auto& field) { wish_large_pages(field); }), wish_large_pages(s.flow[d]),
+        wish_large_pages(s.speeds[d]), wish_large_pages(s.flux[d]), wish_large_pages(s.flux_response[d]);
   wish_large_pages(s.cell_sums), wish_large_pages(s.cell);
 }
 
@@ -174,7 +174,7 @@ State<D> make_state(const Scene& scene) {
   s.counts_room = s.has_water || !scene.output.probes.empty() || !scene.loads.empty();
   keep_discharge(s, s.soil), keep_discharge(s, s.fixed);
   for (int d = 0; d < D; ++d) {
-    s.sums[d] = Field<FaceSums>(s.grid.count());
+    s.sums[d] = FaceSumFields(s.grid.count(), s.has_soil, s.has_water);
     s.image[d] = Field<FaceImage>(s.grid.count());
     s.flow[d] = Field<FaceFlow>(s.grid.count());
     s.rest[d] = Field<FaceRest>(s.grid.count());

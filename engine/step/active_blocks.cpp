@@ -11,7 +11,7 @@ void forget(State<D>& s, int block) {
   const bool keeps_flow = s.keeps_flow();
   s.blocks.cells_at(s.grid, block, true, [&](int i, const Cell<D>&) {
     for (int d = 0; d < D; ++d) {
-      s.sums[d][i] = {};
+      s.sums[d].clear(i);
       s.image[d][i] = {};
       if (keeps_flow) s.flow[d][i] = {};
       s.speeds[d][i] = {};

@@ -1,39 +1,58 @@
 #pragma once
 // What both phases do when their points take the faces' velocities.
 
+#include <cstddef>
+
+#include "engine/grid/window_rows.hpp"
 #include "engine/step/batches.hpp"
 #include "engine/step/move_point.hpp"
 #include "engine/step/state.hpp"
 
 namespace quicksand {
 
-/// One phase's members of FaceSpeeds.
+/// Where one phase's members are among the four of FaceSpeeds.
 struct SpeedMembers {
-  double FaceSpeeds::*old, FaceSpeeds::*now;
+  int old, now;
 };
-inline constexpr SpeedMembers kSoilSpeeds{&FaceSpeeds::soil_old, &FaceSpeeds::soil},
-    kWaterSpeeds{&FaceSpeeds::water_old, &FaceSpeeds::water};
+inline constexpr SpeedMembers kSoilSpeeds{0, 1}, kWaterSpeeds{2, 3};
+static_assert(offsetof(FaceSpeeds, soil) == 1 * sizeof(double) &&
+              offsetof(FaceSpeeds, water_old) == 2 * sizeof(double) &&
+              offsetof(FaceSpeeds, water) == 3 * sizeof(double) && sizeof(FaceSpeeds) == 4 * sizeof(double));
 
-/// One component of a phase's velocity on the window of a cell at the start and the end of the step, m/s:
-/// where it lies, or with folds gathered.
-template <SpeedMembers members>
-struct OpenWindow {
-  const FaceSpeeds* home;
-  FaceSteps step;
-  double old(int x, int y, int z) const { return home[step.to(x, y, z)].*members.old; }
-  double now(int x, int y, int z) const { return home[step.to(x, y, z)].*members.now; }
-};
-template <SpeedMembers members, int D>
-struct FoldedWindow {
-  std::array<double, CellWindow<D>::kFaces> old_, now_;
-  FoldedWindow(const State<D>& s, const CellWindow<D>& window, int d) {
+/// Component d of a phase's velocity on the window of a cell at the start and the end of the step, m/s, on
+/// node x along the component's own axis, y and z along the others: where it lies, or with folds gathered.
+template <SpeedMembers members, int d, int D>
+class VelocityWindow {
+  using Rows = WindowRows<d, D>;
+
+ public:
+  QUICKSAND_INLINE VelocityWindow(const State<D>& s, const CellWindow<D>& window) {
+    if (window.open()) {
+      const auto first = first_of_rows<d>(s.grid, window, s.speeds[d].data());
+      each<Rows::count>([&](auto r) __attribute__((always_inline)) { row_[r] = &first[r]->soil_old; });
+    } else {
+      gather(s, window);
+      each<Rows::count>([&](auto r) __attribute__((always_inline)) { row_[r] = &gathered_[16 * r]; });
+    }
+  }
+  QUICKSAND_INLINE double old(auto x, auto y, auto z) const { return row(x, y, z)[members.old]; }
+  QUICKSAND_INLINE double now(auto x, auto y, auto z) const { return row(x, y, z)[members.now]; }
+
+ private:
+  QUICKSAND_INLINE const double* row(auto x, auto y, auto z) const {
+    constexpr int place = Rows::place(x + 4 * (y + 3 * z));
+    return row_[place / 8] + place % 8 * 2;
+  }
+  void gather(const State<D>& s, const CellWindow<D>& window) {
     window.faces(d, [&](int node, int face, double sign) {
-      old_[node] = sign * (s.speeds[d][face].*members.old);
-      now_[node] = sign * (s.speeds[d][face].*members.now);
+      const double* of = &s.speeds[d][face].soil_old;
+      double* to = &gathered_[2 * Rows::place(node)];
+      to[members.old] = sign * of[members.old];
+      to[members.now] = sign * of[members.now];
     });
   }
-  double old(int x, int y, int z) const { return old_[x + 4 * (y + 3 * z)]; }
-  double now(int x, int y, int z) const { return now_[x + 4 * (y + 3 * z)]; }
+  std::array<const double*, Rows::count> row_;  ///< FaceSpeeds, one after the other
+  std::array<double, 16 * Rows::count> gathered_;
 };
 
 /// On the windows of two cells, in the lanes of the points of each.
@@ -41,10 +60,10 @@ template <class Window, int D>
 struct PairedWindow {
   const PointBatch<D>& batch;
   Window first, second;
-  QUICKSAND_INLINE BatchLanes old(int x, int y, int z) const {
+  QUICKSAND_INLINE BatchLanes old(auto x, auto y, auto z) const {
     return batch.by_cell(first.old(x, y, z), second.old(x, y, z));
   }
-  QUICKSAND_INLINE BatchLanes now(int x, int y, int z) const {
+  QUICKSAND_INLINE BatchLanes now(auto x, auto y, auto z) const {
     return batch.by_cell(first.now(x, y, z), second.now(x, y, z));
   }
 };
@@ -53,42 +72,30 @@ struct PairedWindow {
 template <SpeedMembers members, int D, class F>
 QUICKSAND_INLINE void for_velocities(const State<D>& s, const PointBatch<D>& batch, const BatchWindows<D>& at,
                                      F&& f) {
-  using Open = OpenWindow<members>;
-  using Folded = FoldedWindow<members, D>;
-  const auto open = [&](int d, int cell) __attribute__((always_inline)) {
-    return Open{&s.speeds[d][at.home[cell]], FaceSteps(s.grid, d)};
-  };
-  if (!at.open())
-    for_components<D>([&](auto d) __attribute__((always_inline)) {
-      const Folded first(s, at.window[0], d);
-      if constexpr (PointBatch<D>::kPairs)
-        f(d, PairedWindow<Folded, D>{batch, first, Folded(s, at.window[1], d)});
-      else
-        f(d, first);
-    });
-  else if (PointBatch<D>::kPairs && batch.cells == 2)
-    for_components<D>([&](auto d) __attribute__((always_inline)) {
-      f(d, PairedWindow<Open, D>{batch, open(d, 0), open(d, 1)});
-    });
-  else
-    for_components<D>([&](auto d) __attribute__((always_inline)) { f(d, open(d, 0)); });
+  for_components<D>([&](auto d) __attribute__((always_inline)) {
+    using Window = VelocityWindow<members, d, D>;
+    if constexpr (PointBatch<D>::kPairs)
+      f(d, PairedWindow<Window, D>{batch, Window(s, at.window[0]), Window(s, at.window[1])});
+    else
+      f(d, Window(s, at.window[0]));
+  });
 }
 /// Their sums for a batch's points, one by one.
 template <int d, int D, class Kernel, class Velocity>
 QUICKSAND_INLINE BatchLanes old_value(const Kernel& kernel, const Velocity& v) {
   return window_value<d, D>(
-      kernel, [&](int x, int y, int z) __attribute__((always_inline)) { return v.old(x, y, z); });
+      kernel, [&](auto x, auto y, auto z) __attribute__((always_inline)) { return v.old(x, y, z); });
 }
 template <int d, int D, class Kernel, class Velocity>
 QUICKSAND_INLINE BatchLanes new_value(const Kernel& kernel, const Velocity& v) {
   return window_value<d, D>(
-      kernel, [&](int x, int y, int z) __attribute__((always_inline)) { return v.now(x, y, z); });
+      kernel, [&](auto x, auto y, auto z) __attribute__((always_inline)) { return v.now(x, y, z); });
 }
 /// With second(nodes, i) in place of the derivatives.
 template <int d, int D, class Kernel, class Velocity, class Second>
 QUICKSAND_INLINE WindowSum<D> new_sum(const Kernel& kernel, const Velocity& v, const Second& second) {
   return window_sum<d, D>(
-      kernel, [&](int x, int y, int z) __attribute__((always_inline)) { return v.now(x, y, z); }, second);
+      kernel, [&](auto x, auto y, auto z) __attribute__((always_inline)) { return v.now(x, y, z); }, second);
 }
 
 /// FLIP with a little PIC: the point keeps its own velocity plus the grid's change, and relaxes to the
@@ -117,9 +124,10 @@ template <class Shape, int d, int D, class Kernel, class Velocity>
 QUICKSAND_INLINE void put_gradient(const Grid<D>& grid, const PointBatch<D>& batch, const Kernel& kernel,
                                    const Velocity& v, PointSet<D>& set) {
   const WindowSum<D> sum = new_sum<d, D>(kernel, v, AffineFactor<Shape>{});
-  for (int k = 0; k < batch.count; ++k)
-    for (int j = 0; j < D; ++j)
-      set.affine[batch.point[k]][d][axis_of(d, j)] = grid.inverse_h * sum.slope[j][k];
+  for (int j = 0; j < D; ++j) {
+    const Kept<> slope = grid.inverse_h * sum.slope[j];
+    for (int k = 0; k < batch.count; ++k) set.affine[batch.point[k]][d][axis_of(d, j)] = slope[k];
+  }
 }
 
 /// Moves points by `way`; returns how many a wall stopped.
@@ -132,12 +140,15 @@ QUICKSAND_INLINE int move_batch(const Grid<D>& grid, const Walls<D>& walls, cons
     return 0;
   }
   int stopped = 0;
+  std::array<Kept<>, D> places, ways;
+  for (int d = 0; d < D; ++d) places[d] = x[d], ways[d] = way[d];
   for (int k = 0; k < batch.count; ++k) {
     Vec<D> at, by;
-    for (int d = 0; d < D; ++d) at[d] = x[d][k], by[d] = way[d][k];
+    for (int d = 0; d < D; ++d) at[d] = places[d][k], by[d] = ways[d][k];
     stopped += move_point<D>(grid, walls, windows.home[batch.cell_of(k)], at, by);
-    for (int d = 0; d < D; ++d) x[d][k] = at[d];
+    for (int d = 0; d < D; ++d) places[d][k] = at[d];
   }
+  for (int d = 0; d < D; ++d) x[d] = places[d].lanes();
   return stopped;
 }
 

@@ -1,37 +1,11 @@
 #pragma once
 // Loops over the points of a block, cell by cell, some at a time with their weights.
 
-#include <utility>
-
 #include "engine/grid/cell_kernel.hpp"
+#include "engine/grid/shuffles.hpp"
 #include "engine/points/blocks.hpp"
 
 namespace quicksand {
-
-namespace batch {
-
-/// v[i][k] = first[n k + i] for k < count, else 0; by shuffles of registers.
-template <int n>
-QUICKSAND_INLINE std::array<BatchLanes, n> columns(const double* first, int count) {
-  std::array<BatchLanes, n> part, column;
-  for (int m = 0; m < n; ++m) part[m] = some_lanes_from(first + m * kBatch, n * count - m * kBatch);
-  const auto merge = [&]<int i, int m, int... k>(
-      std::integral_constant<int, i>, std::integral_constant<int, m>, std::integer_sequence<int, k...>)
-      __attribute__((always_inline)) {
-    // Lane k is entry n k + i of all: in part m or in another.
-    column[i] = __builtin_shufflevector(m == 0 ? part[m] : column[i], part[m],
-                                        ((n * k + i) / kBatch == m ? kBatch + (n * k + i) % kBatch : k)...);
-  };
-  const auto merge_all = [&]<int... im>(std::integer_sequence<int, im...>) __attribute__((always_inline)) {
-    (merge(std::integral_constant<int, im / n>{}, std::integral_constant<int, im % n>{},
-           std::make_integer_sequence<int, kBatch>{}),
-     ...);
-  };
-  merge_all(std::make_integer_sequence<int, n * n>{});
-  return column;
-}
-
-}  // namespace batch
 
 /// Some points of one or two cells of a block: those of the first, then those of the second. Lanes beyond
 /// `count` hold zeros or the first one's values.
@@ -59,44 +33,44 @@ struct PointBatch {
   /// `first` in the lanes of the first cell's points, `second` in those of the other.
   QUICKSAND_INLINE BatchLanes by_cell(double first, double second) const {
     if constexpr (!kPairs) return all_lanes<BatchLanes>(first);
-    const BatchLanes lane{0, 1, 2, 3, 4, 5, 6, 7};
-    return where(lane < end[0], all_lanes<BatchLanes>(first), all_lanes<BatchLanes>(second));
+    return where(lane_numbers() < end[0], all_lanes<BatchLanes>(first), all_lanes<BatchLanes>(second));
   }
   /// Coordinates of the points' cells.
   QUICKSAND_INLINE std::array<BatchLanes, D> places() const {
     std::array<BatchLanes, D> at;
-    for (int d = 0; d < D; ++d) at[d] = by_cell(cell[0][d], cell[1][d]);
+    each<D>([&](auto d) __attribute__((always_inline)) { at[d] = by_cell(cell[0][d], cell[1][d]); });
     return at;
   }
   /// v in the lanes of these points, else 0.
   QUICKSAND_INLINE BatchLanes only(const BatchLanes& v) const {
-    const BatchLanes lane{0, 1, 2, 3, 4, 5, 6, 7};
-    return where(lane < count, v, BatchLanes{});
+    return where(lane_numbers() < count, v, BatchLanes{});
   }
   /// Of an array of numbers.
   QUICKSAND_INLINE BatchLanes get(const std::vector<double>& from) const {
     if (in_a_row) return some_lanes_from(&from[point[0]], count);
-    BatchLanes v;
-    for (int k = 0; k < kBatch; ++k) v[k] = from[point[k]];
-    return v;
+    return lanes_of<kBatch>([&](int k) { return from[point[k]]; });
   }
   QUICKSAND_INLINE void put(const BatchLanes& v, std::vector<double>& to) const {
-    for (int k = 0; k < count; ++k) to[point[k]] = v[k];
+    const Kept<> kept = v;
+    for (int k = 0; k < count; ++k) to[point[k]] = kept[k];
   }
   /// Of an array of vectors, component by component.
   template <std::size_t n>
   QUICKSAND_INLINE std::array<BatchLanes, n> get(const std::vector<std::array<double, n>>& from) const {
-    if (in_a_row) return batch::columns<static_cast<int>(n)>(from[point[0]].data(), count);
+    if (in_a_row) return columns<static_cast<int>(n)>(from[point[0]].data(), count);
     std::array<BatchLanes, n> v;
-    for (int k = 0; k < kBatch; ++k)
-      for (std::size_t i = 0; i < n; ++i) v[i][k] = from[point[k]][i];
+    each<static_cast<int>(n)>([&](auto i) __attribute__((always_inline)) {
+      v[i] = lanes_of<kBatch>([&](int k) { return from[point[k]][i]; });
+    });
     return v;
   }
   template <std::size_t n>
   QUICKSAND_INLINE void put(const std::array<BatchLanes, n>& v,
                             std::vector<std::array<double, n>>& to) const {
+    std::array<Kept<>, n> kept;
+    each<static_cast<int>(n)>([&](auto i) __attribute__((always_inline)) { kept[i] = v[i]; });
     for (int k = 0; k < count; ++k)
-      for (std::size_t i = 0; i < n; ++i) to[point[k]][i] = v[i][k];
+      for (std::size_t i = 0; i < n; ++i) to[point[k]][i] = kept[i][k];
   }
 };
 

@@ -18,7 +18,7 @@ bool wall_between(const State<D>& s, int d, int face, int a, int side) {
 
 template <int D>
 bool holds_water(const State<D>& s, int d, int face) {
-  return s.sums[d][face].water_mass > kMassCutoff * s.constants.water_density * s.volume.face(d, face);
+  return s.sums[d].water[face].mass > kMassCutoff * s.constants.water_density * s.volume.face(d, face);
 }
 
 /// Velocity of the water at a face beyond the water surface, from the neighbours that know better; or false.

@@ -15,7 +15,7 @@ namespace {
 
 template <class P, int D>
 double soil_reaction(const State<D>& s, int d, int face, double dt) {
-  const FaceSums& sums = s.sums[d][face];
+  const FaceSums sums = s.sums[d][face];
   const FaceSpeeds& v = s.speeds[d][face];
   if (sums.soil_mass <= kMassCutoff * s.constants.water_density * s.volume.face(d, face)) return 0;
   const double change = v.soil - v.soil_old;
@@ -36,7 +36,7 @@ double soil_reaction(const State<D>& s, int d, int face, double dt) {
 
 template <int D>
 double water_reaction(const State<D>& s, int d, int face, double dt) {
-  const FaceSums& sums = s.sums[d][face];
+  const FaceSums sums = s.sums[d][face];
   const FaceFlow& f = s.flow[d][face];
   const FaceSpeeds& v = s.speeds[d][face];
   if (s.water_walls.closed(d, face)) return -dt * sums.water_mass * s.constants.gravity[d];
@@ -53,7 +53,7 @@ double water_reaction(const State<D>& s, int d, int face, double dt) {
 /// Drops above the last wet face move with the water below them instead of falling through it.
 template <int D>
 double surface_support(const State<D>& s, int d, int face, double dt) {
-  const FaceSums& sums = s.sums[d][face];
+  const FaceSums sums = s.sums[d][face];
   const FaceFlow& f = s.flow[d][face];
   const FaceSpeeds& v = s.speeds[d][face];
   if (f.wet < 2) return 0;
@@ -76,7 +76,7 @@ void add_damping(int d, double mass, double inertia, double before, double after
 }
 template <int D>
 void add_damping(const State<D>& s, int d, int face, Damped<D>& sum) {
-  const FaceSums& sums = s.sums[d][face];
+  const FaceSums sums = s.sums[d][face];
   const FaceFlow& f = s.flow[d][face];
   const FaceSpeeds& v = s.speeds[d][face];
   const FaceRest& rest = s.rest[d][face];
@@ -111,7 +111,7 @@ struct Sum {
 template <class P, int D>
 void add_face(const State<D>& s, int d, int face, double dt, Sum<D>& sum) {
   if (s.constants.kernel == Kernel::linear) sum.grid[d] += momentum_beside_leader(s, d, face);
-  const FaceSums& sums = s.sums[d][face];
+  const FaceSums sums = s.sums[d][face];
   if (sums.soil_mass == 0 && sums.water_mass == 0) return;
   if constexpr (P::soil) sum.reaction[d] += soil_reaction<P>(s, d, face, dt);
   if constexpr (P::water) {
@@ -130,20 +130,27 @@ void add_plain(const State<D>& s, int block, double dt, Sum<D>& sum) {
   const Field<double>& pressure = felt_pressure(s);
   const double rho = s.constants.water_density, per_density = 1 / rho;
   const double least = kMassCutoff * rho * s.volume.uniform;
-  for_face_rows(s, block, [&](const FaceRows& rows, int d) {
-    double reaction = 0, grid = 0;
-    for (int k = 0; k < 8; ++k) {
-      const int face = rows.face(k);
-      const FaceSums& sums = s.sums[d][face];
-      const FaceSpeeds& v = s.speeds[d][face];
-      const double g = P::water ? inner_gradient(s, pressure, d, face) : 0;
-      if (P::soil && sums.soil_mass > least) reaction += sums.soil_force - sums.grains * g;
-      if (P::water) reaction += sums.water_mass * (s.flow[d][face].viscous - g * per_density);
-      grid += sums.soil_mass * v.soil_old + sums.water_mass * v.water_old;
-    }
-    sum.reaction[d] += dt * reaction;
-    sum.grid[d] += grid;
-  });
+  std::array<BatchLanes, D> reaction{}, grid{};
+  for_face_rows(
+      s, block, [&](const FaceRows& rows, int d) __attribute__((always_inline)) {
+        const SumsInLanes<P> sums(s.sums[d], rows);
+        const auto [soil_old, soil, water_old, water] = speeds_of(s.speeds[d], rows);
+        BatchLanes g{};
+        if constexpr (P::water) g = inner_gradients(s, pressure, d, rows);
+        if constexpr (P::soil) {
+          BatchLanes force = sums.soil_force;
+          if constexpr (P::water) force -= sums.grains * g;
+          reaction[d] += where(sums.soil_mass > least, force, BatchLanes{});
+          grid[d] += sums.soil_mass * soil_old;
+        }
+        if constexpr (P::water) {
+          const BatchLanes viscous = lanes_of<kBatch>([&](int k) { return s.flow[d][rows.face(k)].viscous; });
+          reaction[d] += sums.water_mass * (viscous - g * per_density);
+          grid[d] += sums.water_mass * water_old;
+        }
+      });
+  for (int d = 0; d < D; ++d)
+    for (int k = 0; k < kBatch; ++k) sum.reaction[d] += dt * reaction[d][k], sum.grid[d] += grid[d][k];
 }
 
 }  // namespace

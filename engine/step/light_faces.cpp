@@ -41,13 +41,14 @@ int heavy_neighbour(const State<D>& s, int d, int face) {
 }
 
 /// Adds what grains left on a face to another, as if they moved with it.
-void give(const FaceSums& from, FaceSums& to) {
+FaceSums joined(const FaceSums& from, FaceSums to) {
   to.soil_momentum += from.soil_mass * to.soil_momentum / to.soil_mass;
   to.soil_mass += from.soil_mass;
   to.grains += from.grains;
   to.soil_bulk += from.soil_bulk;
   to.soil_force += from.soil_force;
   to.resistivity += from.resistivity;
+  return to;
 }
 
 /// Gives to `leader` what followers of `face` hold, and theirs: at a corner a light face follows one that is
@@ -56,7 +57,7 @@ template <int D>
 void gather(State<D>& s, int d, int leader, int face) {
   for_neighbours(s, d, face, [&](int other) {
     if (s.follower[d][other].leader != face) return;
-    give(s.sums[d][other], s.sums[d][leader]);
+    s.sums[d].set_soil(leader, joined(s.sums[d][other], s.sums[d][leader]));
     s.image[d][leader].soil += s.image[d][other].soil;
     gather(s, d, leader, other);
   });
@@ -82,9 +83,9 @@ int leader_of(const State<D>& s, int d, int face) {
 template <int D>
 void join_light_faces(State<D>& s) {
   for_each_face<D>(s, [&](int d, int face) {
-    const FaceSums& sums = s.sums[d][face];
+    const FaceSums sums = s.sums[d][face];
     const int leader = heavy_neighbour(s, d, face);
-    const FaceSums& moving = sums.soil_mass > 0 || leader == 0 ? sums : s.sums[d][leader];
+    const FaceSums moving = sums.soil_mass > 0 || leader == 0 ? sums : s.sums[d][leader];
     s.follower[d][face] = {leader, sums.soil_mass - s.image[d][face].soil,
                            leader == 0 ? 0 : moving.soil_momentum / moving.soil_mass};
   });
@@ -93,9 +94,7 @@ void join_light_faces(State<D>& s) {
   });
   for_each_face<D>(s, [&](int d, int face) {
     if (s.follower[d][face].leader == 0) return;
-    const FaceSums all = s.sums[d][face];
-    s.sums[d][face] = {};
-    s.sums[d][face].water_mass = all.water_mass, s.sums[d][face].water_momentum = all.water_momentum;
+    s.sums[d].set_soil(face, {});
     s.image[d][face].soil = 0;
   });
 }

@@ -87,7 +87,7 @@ void correct_velocities(State<D>& s);
 /// weight is zero and its gradient is not.
 template <int D>
 inline bool may_be_extended(const State<D>& s, int d, int face) {
-  return s.sums[d][face].water_mass > 0 || s.constants.kernel == Kernel::linear;
+  return s.sums[d].water[face].mass > 0 || s.constants.kernel == Kernel::linear;
 }
 /// Velocities of the water at the faces next to its surface, extrapolated → `speeds`; in those active blocks,
 /// by their numbers, that hold a face for it.

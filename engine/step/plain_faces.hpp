@@ -3,7 +3,7 @@
 // block (State::plain), so that nothing has to be asked of its faces one by one. The same equations face by
 // face are in velocities.cpp, viscosity.cpp and impulse.cpp.
 
-#include "engine/grid/lanes.hpp"
+#include "engine/grid/shuffles.hpp"
 #include "engine/step/phases.hpp"
 
 namespace quicksand {
@@ -27,31 +27,61 @@ QUICKSAND_INLINE void for_face_rows(const State<D>& s, int block, F&& f) {
     }
 }
 
-/// FaceSums of eight faces, member by member.
-struct SumsInLanes {
-  BatchLanes soil_mass, grains, soil_bulk, soil_momentum, soil_force, resistivity, water_mass, water_momentum;
+/// Pairs of eight faces, [0] the first numbers of them and [1] the second.
+template <class Pair>
+QUICKSAND_INLINE std::array<BatchLanes, 2> pairs_of(const Field<Pair>& field, const FaceRows& rows) {
+  return parted<kBatch>(lanes_from<kBatch>(reinterpret_cast<const double&>(field[rows.first])),
+                        lanes_from<kBatch>(reinterpret_cast<const double&>(field[rows.second])));
+}
 
-  QUICKSAND_INLINE SumsInLanes(const Field<FaceSums>& sums, const FaceRows& rows) {
-    std::array<BatchLanes, 8> in;
-    for (int k = 0; k < 8; ++k) in[k] = lanes_from<8>(sums[rows.face(k)].soil_mass);
-    const std::array<BatchLanes, 8> out = transposed(in);
-    soil_mass = out[0], grains = out[1], soil_bulk = out[2], soil_momentum = out[3];
-    soil_force = out[4], resistivity = out[5], water_mass = out[6], water_momentum = out[7];
+/// FaceSums of eight faces, member by member: those that the scene has.
+template <class P>
+struct SumsInLanes {
+  BatchLanes soil_mass, grains, soil_momentum, soil_force, resistivity, water_mass, water_momentum;
+
+  QUICKSAND_INLINE SumsInLanes(const FaceSumFields& sums, const FaceRows& rows) {
+    if constexpr (P::soil) {
+      const auto mass = pairs_of(sums.soil, rows), force = pairs_of(sums.force, rows);
+      soil_mass = mass[0], soil_momentum = mass[1], resistivity = force[0], soil_force = force[1];
+    }
+    if constexpr (P::water) {
+      const auto mass = pairs_of(sums.water, rows);
+      water_mass = mass[0], water_momentum = mass[1];
+    }
+    if constexpr (P::soil && P::water) grains = pairs_of(sums.room, rows)[0];
   }
 };
 
 /// To eight faces, members of FaceSpeeds in their order.
 QUICKSAND_INLINE void put_speeds(Field<FaceSpeeds>& speeds, const FaceRows& rows,
                                  const std::array<BatchLanes, 4>& v) {
-  const BatchLanes none{};
-  const std::array<BatchLanes, 8> by_face = transposed({v[0], v[1], v[2], v[3], none, none, none, none});
-  for (int k = 0; k < 8; ++k)
-    put_lanes<4>(speeds[rows.face(k)].soil_old, __builtin_shufflevector(by_face[k], by_face[k], 0, 1, 2, 3));
+  const auto first =
+      transposed<4>({low_half<8>(v[0]), low_half<8>(v[1]), low_half<8>(v[2]), low_half<8>(v[3])});
+  const auto second =
+      transposed<4>({high_half<8>(v[0]), high_half<8>(v[1]), high_half<8>(v[2]), high_half<8>(v[3])});
+  for (int k = 0; k < 4; ++k) {
+    put_lanes<4>(speeds[rows.first + k].soil_old, first[k]);
+    put_lanes<4>(speeds[rows.second + k].soil_old, second[k]);
+  }
+}
+/// Their members, in that order.
+QUICKSAND_INLINE std::array<BatchLanes, 4> speeds_of(const Field<FaceSpeeds>& speeds, const FaceRows& rows) {
+  std::array<Lanes<4>, 4> first, second;
+  for (int k = 0; k < 4; ++k) {
+    first[k] = lanes_from<4>(speeds[rows.first + k].soil_old);
+    second[k] = lanes_from<4>(speeds[rows.second + k].soil_old);
+  }
+  first = transposed<4>(first), second = transposed<4>(second);
+  return {joined<4>(first[0], second[0]), joined<4>(first[1], second[1]), joined<4>(first[2], second[2]),
+          joined<4>(first[3], second[3])};
 }
 
 QUICKSAND_INLINE void put_rows(Field<double>& field, const FaceRows& rows, const BatchLanes& v) {
-  put_lanes<4>(field[rows.first], __builtin_shufflevector(v, v, 0, 1, 2, 3));
-  put_lanes<4>(field[rows.second], __builtin_shufflevector(v, v, 4, 5, 6, 7));
+  put_lanes<4>(field[rows.first], low_half<8>(v));
+  put_lanes<4>(field[rows.second], high_half<8>(v));
+}
+QUICKSAND_INLINE BatchLanes rows_of(const Field<double>& field, const FaceRows& rows) {
+  return joined<4>(lanes_from<4>(field[rows.first]), lanes_from<4>(field[rows.second]));
 }
 
 /// viscous_acceleration, m/s².
@@ -63,19 +93,19 @@ QUICKSAND_INLINE BatchLanes viscous_in_lanes(const State<D>& s, int d, const Fac
   BatchLanes sum{};
   for (int axis = 0; axis < D; ++axis)
     for (const int side : {-1, 1}) {
-      const SumsInLanes other(s.sums[d], rows.moved(side * s.grid.stride[axis]));
-      const BatchLanes part = other.water_mass * per_mass;
-      const BatchLanes difference = other.water_momentum / other.water_mass - v;
-      sum += where(other.water_mass > least, where(part < one, part, one) * difference, none);
+      const auto [other, momentum] = pairs_of(s.sums[d].water, rows.moved(side * s.grid.stride[axis]));
+      const BatchLanes part = other * per_mass;
+      const BatchLanes difference = momentum / other - v;
+      sum += where(other > least, where(part < one, part, one) * difference, none);
     }
   return s.constants.viscosity / s.constants.water_density * s.grid.inverse_h * s.grid.inverse_h * sum;
 }
 
 /// predict_velocities of eight faces of grains alone.
-template <int D>
+template <class P, int D>
 QUICKSAND_INLINE void predict_dry(State<D>& s, int d, const FaceRows& rows, double dt) {
   const double least = kMassCutoff * s.constants.water_density * s.volume.uniform;
-  const SumsInLanes sums(s.sums[d], rows);
+  const SumsInLanes<P> sums(s.sums[d], rows);
   const BatchLanes none{}, per_mass = 1 / sums.soil_mass;
   const auto soil = sums.soil_mass > least;
   const BatchLanes old = where(soil, sums.soil_momentum * per_mass, none);
@@ -88,10 +118,11 @@ template <class P, int D>
 QUICKSAND_INLINE void predict_wet(State<D>& s, int d, const FaceRows& rows, double dt) {
   const double rho = s.constants.water_density, inertia = s.constants.inertia, fall = s.constants.fall(d);
   const double per_volume = 1 / s.volume.uniform, least = kMassCutoff * rho * s.volume.uniform;
-  const SumsInLanes sums(s.sums[d], rows);
+  const SumsInLanes<P> sums(s.sums[d], rows);
   const BatchLanes none{}, one = all_lanes<BatchLanes>(1);
-  const auto water = sums.water_mass > least, soil = sums.soil_mass > least;
-  const BatchLanes phi = P::soil ? sums.grains * per_volume : none;
+  const auto water = sums.water_mass > least;
+  BatchLanes phi{};
+  if constexpr (P::soil) phi = sums.grains * per_volume;
   const BatchLanes room = one - phi, least_room = all_lanes<BatchLanes>(kMinRoom);
   const BatchLanes n = where(room > least_room, room, least_room);
 
@@ -105,6 +136,7 @@ QUICKSAND_INLINE void predict_wet(State<D>& s, int d, const FaceRows& rows, doub
   BatchLanes soil_old{}, soil_v{}, soil_response{}, exchange{}, exchange_response{};
   BatchLanes water_v, water_response;
   if constexpr (P::soil) {
+    const auto soil = sums.soil_mass > least;
     soil_old = where(soil, sums.soil_momentum / sums.soil_mass, none);
     const BatchLanes soil_mass = where(soil, inertia * per_volume * sums.soil_mass, none);
     const BatchLanes soil_momentum =
@@ -133,7 +165,7 @@ QUICKSAND_INLINE void predict_wet(State<D>& s, int d, const FaceRows& rows, doub
 
   put_speeds(s.speeds[d], rows, {soil_old, soil_v, water_old, water_v});
   const std::array<BatchLanes, 8> flow =
-      transposed({soil_response, water_response, phi, n, exchange, exchange_response, viscous, none});
+      transposed<8>({soil_response, water_response, phi, n, exchange, exchange_response, viscous, none});
   put_rows(s.flux[d], rows, phi * soil_v + n * water_v);
   put_rows(s.flux_response[d], rows, phi * soil_response + n * water_response);
   for (int k = 0; k < 8; ++k) {
@@ -150,14 +182,15 @@ void predict_plain(State<D>& s, int block, double dt) {
         if constexpr (P::water)
           predict_wet<P>(s, d, rows, dt);
         else
-          predict_dry(s, d, rows, dt);
+          predict_dry<P>(s, d, rows, dt);
       });
 }
 
-/// The gradient between two wet cells, Pa/m.
+/// The gradients between wet cells, Pa/m.
 template <int D>
-double inner_gradient(const State<D>& s, const Field<double>& pressure, int d, int face) {
-  return (pressure[face] - pressure[face - s.grid.stride[d]]) * s.grid.inverse_h;
+QUICKSAND_INLINE BatchLanes inner_gradients(const State<D>& s, const Field<double>& pressure, int d,
+                                            const FaceRows& rows) {
+  return (rows_of(pressure, rows) - rows_of(pressure, rows.moved(-s.grid.stride[d]))) * s.grid.inverse_h;
 }
 /// That which a step's velocities feel.
 template <int D>
@@ -170,19 +203,21 @@ template <class P, int D>
 void correct_plain(State<D>& s, int block) {
   if constexpr (!P::water) return;
   const Field<double>& pressure = felt_pressure(s);
-  for_face_rows(s, block, [&](const FaceRows& rows, int d) {
-    for (int k = 0; k < 8; ++k) {
-      const int face = rows.face(k);
-      const double g = inner_gradient(s, pressure, d, face);
-      FaceFlow& f = s.flow[d][face];
-      FaceSpeeds& v = s.speeds[d][face];
-      v.water -= f.water_response * g;
-      if constexpr (P::soil) {
-        v.soil -= f.soil_response * g;
-        f.exchange -= f.exchange_response * g;
-      }
-    }
-  });
+  for_face_rows(
+      s, block, [&](const FaceRows& rows, int d) __attribute__((always_inline)) {
+        const Kept<> gradient = inner_gradients(s, pressure, d, rows);
+        for (int k = 0; k < 8; ++k) {
+          const int face = rows.face(k);
+          const double g = gradient[k];
+          FaceFlow& f = s.flow[d][face];
+          FaceSpeeds& v = s.speeds[d][face];
+          v.water -= f.water_response * g;
+          if constexpr (P::soil) {
+            v.soil -= f.soil_response * g;
+            f.exchange -= f.exchange_response * g;
+          }
+        }
+      });
 }
 
 }  // namespace quicksand

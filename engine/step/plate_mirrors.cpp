@@ -20,7 +20,8 @@ constexpr int kAlong = kPlateAxis;
 /// relative to the plate's, `speed` along d; +1 leaves it.
 template <int D>
 void fold_grains(State<D>& s, int d, int inner, int outer, double sign, double speed) {
-  FaceSums &in = s.sums[d][inner], &out = s.sums[d][outer];
+  FaceSums in = s.sums[d][inner];
+  const FaceSums out = s.sums[d][outer];
   in.soil_momentum += sign * out.soil_momentum + (1 - sign) * speed * out.soil_mass;
   in.soil_force += sign * out.soil_force;
   in.soil_mass += out.soil_mass;
@@ -28,10 +29,8 @@ void fold_grains(State<D>& s, int d, int inner, int outer, double sign, double s
   in.soil_bulk += out.soil_bulk;
   in.resistivity += out.resistivity;
   s.image[d][inner].soil += (1 - sign) * out.soil_mass + sign * s.image[d][outer].soil;
-  const double water_mass = out.water_mass, water_momentum = out.water_momentum;
-  out = {};
-  out.water_mass = water_mass;
-  out.water_momentum = water_momentum;
+  s.sums[d].set_soil(inner, in);
+  s.sums[d].set_soil(outer, {});
 }
 
 /// The face behind a ghost's mirror.
@@ -41,17 +40,18 @@ int behind(const Ghost& ghost) { return 2 * ghost.carried - ghost.inner; }
 /// lifted.
 template <int D>
 void fold_ghosts(State<D>& s) {
+  if (!s.has_water) return;
   const auto& ghosts = s.water_walls.ghosts(kAlong);
   for (std::size_t k = 0; k < ghosts.size(); ++k) {
-    FaceSums& out = s.sums[kAlong][s.grid.count() + k];
+    MassSum& out = s.sums[kAlong].water[s.grid.count() + k];
     FaceImage& image = s.image[kAlong][s.grid.count() + k];
     Plate<D>& plate = s.plates[s.plate_of[ghosts[k].carried] - 1];
     const auto add = [&](int face, double mass, double momentum, double mirrored) {
-      s.sums[kAlong][face].water_mass += mass;
-      s.sums[kAlong][face].water_momentum += momentum;
+      s.sums[kAlong].water[face].mass += mass;
+      s.sums[kAlong].water[face].momentum += momentum;
       s.image[kAlong][face].water += mirrored;
     };
-    const double mass = out.water_mass, momentum = out.water_momentum, at_speed = 2 * plate.speed * mass;
+    const double mass = out.mass, momentum = out.momentum, at_speed = 2 * plate.speed * mass;
     if (plate.folded) {
       add(ghosts[k].inner, mass, at_speed - momentum, 2 * mass - image.water);
       add(ghosts[k].carried, 2 * mass, at_speed, 2 * image.water);
@@ -76,13 +76,15 @@ void fold_plates(State<D>& s) {
     if (!plate.folded) continue;
     const int up = s.grid.stride[kAlong];
     for (int face : plate.row) {
-      FaceSums &row = s.sums[kAlong][face], &out = s.sums[kAlong][face + up];
+      FaceSums row = s.sums[kAlong][face];
+      const FaceSums out = s.sums[kAlong][face + up];
       FaceImage &held = s.image[kAlong][face], &beyond = s.image[kAlong][face + up];
       row.soil_mass += 2 * out.soil_mass;
       row.grains += 2 * out.grains;
       plate.mirrored += 2 * out.soil_mass;
       row.soil_momentum += 2 * out.soil_mass * plate.speed;
       row.soil_force += 2 * out.soil_force;
+      s.sums[kAlong].set_soil(face, row);
       held.soil += 2 * beyond.soil;
       fold_grains(s, kAlong, face - up, face + up, -1, plate.speed);
     }
@@ -181,9 +183,9 @@ void make_ghosts(State<D>& s) {
     field.reserve(2 * s.grid.count());
     field.resize(count);
   };
-  extend(s.sums[kAlong]), extend(s.image[kAlong]), extend(s.flow[kAlong]), extend(s.speeds[kAlong]);
+  s.sums[kAlong].each(extend), extend(s.image[kAlong]), extend(s.flow[kAlong]), extend(s.speeds[kAlong]);
   for (std::size_t k = 0; k < ghosts.size(); ++k) {
-    s.sums[kAlong][s.grid.count() + k] = {};
+    s.sums[kAlong].clear(s.grid.count() + k);
     s.image[kAlong][s.grid.count() + k] = {};
     s.flow[kAlong][s.grid.count() + k] = s.flow[kAlong][behind(ghosts[k])];
     s.speeds[kAlong][s.grid.count() + k] = s.speeds[kAlong][behind(ghosts[k])];

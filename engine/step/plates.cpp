@@ -55,7 +55,7 @@ void hold_row(State<D>& s, const Plate<D>& plate) {
 /// Weight (N, upward) of what is at a face of a row.
 template <int D>
 double weight(const State<D>& s, int face) {
-  const FaceSums& sums = s.sums[kAlong][face];
+  const FaceSums sums = s.sums[kAlong][face];
   const bool below = s.cell[face - s.grid.stride[kAlong]].wet(), above = s.cell[face].wet();
   const double rho = s.constants.water_density;
   double mass = sums.soil_mass + sums.water_mass;
@@ -73,7 +73,7 @@ template <int D>
 Carried carried(const State<D>& s, const Plate<D>& plate) {
   Carried c;
   for (int face : plate.row) {
-    const FaceSums& sums = s.sums[kAlong][face];
+    const FaceSums sums = s.sums[kAlong][face];
     c.mass += s.constants.inertia * (sums.soil_mass + sums.water_mass);
     c.momentum += s.constants.inertia * (sums.soil_momentum + sums.water_momentum);
     c.force += sums.soil_force + weight(s, face);

@@ -1,6 +1,8 @@
 #pragma once
 // Faces → grains: velocity, strain and stress, porosity, position.
 
+#include <bit>
+
 #include "engine/step/advect.hpp"
 #include "engine/step/point_totals.hpp"
 
@@ -42,9 +44,7 @@ QUICKSAND_INLINE BatchLanes strained_porosity(const BatchLanes& before, const Ba
   const BatchLanes exact = 1.0 - (1.0 - before) / where(stretch > least, stretch, least);
   const BatchLanes n =
       clamped<BatchLanes>(exact, all_lanes<BatchLanes>(kMinRoom), all_lanes<BatchLanes>(kMaxPorosity));
-  const auto off = n != exact;
-  if (any_of(off, count))
-    for (int k = 0; k < count; ++k) held += off[k] != 0;
+  held += std::popcount(bits_of(n != exact) & first_bits(count));
   return n;
 }
 
@@ -81,11 +81,10 @@ QUICKSAND_INLINE BatchLanes update_soil(State<D>& s, const PointBatch<D>& batch,
   std::array<const SoilMaterial*, kBatch> material;
   material.fill(&s.constants.soils.front());
   BatchLanes max_porosity = all_lanes<BatchLanes>(material[0]->max_porosity);
-  if (s.constants.soils.size() > 1)
-    for (int k = 0; k < kBatch; ++k) {
-      material[k] = &s.constants.soils[soil.soil[batch.point[k]]];
-      max_porosity[k] = material[k]->max_porosity;
-    }
+  if (s.constants.soils.size() > 1) {
+    for (int k = 0; k < kBatch; ++k) material[k] = &s.constants.soils[soil.soil[batch.point[k]]];
+    max_porosity = lanes_of<kBatch>([&](int k) { return material[k]->max_porosity; });
+  }
   const BatchLanes before = batch.get(soil.porosity);
   const BatchLanes n = strained_porosity<D>(before, volume_ratio<D, BatchLanes>(l, dt) * (1.0 + dt * hoop),
                                             batch.count, totals.interventions.clamped_values);

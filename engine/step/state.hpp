@@ -16,22 +16,11 @@
 #include "engine/materials/stability.hpp"
 #include "engine/points/blocks.hpp"
 #include "engine/points/points.hpp"
+#include "engine/step/face_sums.hpp"
 #include "engine/step/multigrid.hpp"
 #include "engine/step/pressure_system.hpp"
 
 namespace quicksand {
-
-/// What points leave on a face. Summed over points; per face, not per volume. Soil adds all of it at once.
-struct alignas(64) FaceSums {
-  double soil_mass = 0;       ///< kg
-  double grains = 0;          ///< m³
-  double soil_bulk = 0;       ///< m³, grains and pores
-  double soil_momentum = 0;   ///< kg·m/s
-  double soil_force = 0;      ///< N, of the effective stress
-  double resistivity = 0;     ///< N·s/m, bulk volume × ρw g/k
-  double water_mass = 0;      ///< kg
-  double water_momentum = 0;  ///< kg·m/s
-};
 
 /// Twice the mass that reached a face as a mirror image with its sign changed: what walls hold of its
 /// momentum.
@@ -274,7 +263,7 @@ struct State {
 
   // On the whole lattice, but only what lies in active blocks is ever other than zeros.
   // Behind the faces of component y, sums, image, flow and speeds hold the ghosts of `water_walls`.
-  std::array<Field<FaceSums>, D> sums;
+  std::array<FaceSumFields, D> sums;
   std::array<Field<FaceImage>, D> image;
   std::array<Field<Follower>, D> follower;  ///< linear kernel only
   std::array<Field<FaceSpeeds>, D> speeds;

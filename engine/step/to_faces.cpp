@@ -16,7 +16,7 @@ void points_to_faces(State<D>& s) {
   s.blocks.all([&](int b) {
     s.blocks.cells(s.grid, b, true, [&](int i, const Cell<D>&) {
       for (int d = 0; d < D; ++d) {
-        s.sums[d][i] = {};
+        s.sums[d].clear(i);
         FaceImage& image = s.image[d][i];  // but beside walls it stays as it is, untouched in memory
         if (image.soil != 0 || image.water != 0) image = {};
         s.soil_walls.commit_separated(d, i);

@@ -119,7 +119,7 @@ struct Taken {
 };
 template <int D>
 Taken taken(const State<D>& s, int d, int face) {
-  const FaceSums& f = s.sums[d][face];
+  const FaceSums f = s.sums[d][face];
   const double volume = s.volume.face(d, face);
   const FixedFace fixed = s.fixed.size() ? s.fixed_face[d][face] : FixedFace{};
   const double grains = f.grains / volume + fixed.phi, bulk = f.soil_bulk / volume + fixed.bulk;
@@ -174,7 +174,7 @@ double pushed_part(double phi, double resistivity, double fixed_phi, double fixe
 
 template <class P, int D>
 FaceTrial predicted(State<D>& s, int d, int face, double dt) {
-  const FaceSums& sums = s.sums[d][face];
+  const FaceSums sums = s.sums[d][face];
   FaceTrial f;
   const double volume = s.volume.face(d, face), rho = s.constants.water_density;
   const double inertia = s.constants.inertia, fall = s.constants.fall(d);

@@ -9,8 +9,8 @@ namespace {
 
 template <int D>
 double old_velocity(const State<D>& s, int d, int face) {
-  const FaceSums& f = s.sums[d][face];
-  return f.water_momentum / f.water_mass;
+  const MassSum& f = s.sums[d].water[face];
+  return f.momentum / f.mass;
 }
 
 /// Difference of velocity to the neighbour of `face` along `axis`, m/s, times the part of the face's water
@@ -29,9 +29,9 @@ double difference(const State<D>& s, int d, int face, int axis, int side) {
       if (s.water_walls.closed(axis, wall)) return s.water_walls.no_slip(axis, wall) ? -2 * v : 0;
     }
   }
-  const double there = s.sums[d][other].water_mass / s.volume.face(d, other);
+  const double there = s.sums[d].water[other].mass / s.volume.face(d, other);
   if (there <= kMassCutoff * s.constants.water_density) return 0;
-  const double here = s.sums[d][face].water_mass / s.volume.face(d, face);
+  const double here = s.sums[d].water[face].mass / s.volume.face(d, face);
   return std::min(1.0, there / here) * (old_velocity(s, d, other) - v);
 }
 

@@ -98,7 +98,7 @@ void water_from_faces(State<D>& s, const PointBatch<D>& batch, double dt, double
     if (!falls[k]) continue;
     Vec<D> new_v, new_way;
     fall<S, D>(s, batch.point[k], dt, pic, new_v, new_way, totals);
-    for (int d = 0; d < D; ++d) v[d][k] = new_v[d], way[d][k] = new_way[d];
+    for (int d = 0; d < D; ++d) set_lane(v[d], k, new_v[d]), set_lane(way[d], k, new_way[d]);
   }
   batch.put(v, s.water.v);
   motion_totals.add(batch, s.water.mass, v, BatchLanes{});
@@ -117,10 +117,10 @@ void water_from_faces(State<D>& s, const PointBatch<D>& batch, double dt, double
     Vec<D> at;
     for (int d = 0; d < D; ++d) at[d] = middle[d][k];
     if (falls[k]) {
-      for (int d = 0; d < D; ++d) carried[d][k] = way[d][k];
+      for (int d = 0; d < D; ++d) set_lane(carried[d], k, way[d][k]);
     } else if (s.grid.cell_of(at) != batch.cell[batch.cell_of(k)]) {
       const Vec<D> other = carried_way<Shape, D>(s, at, dt);
-      for (int d = 0; d < D; ++d) carried[d][k] = other[d];
+      for (int d = 0; d < D; ++d) set_lane(carried[d], k, other[d]);
     }
   }
   totals.interventions.clipped_points += move_batch<D>(s.grid, s.water_walls, batch, windows, x, carried);

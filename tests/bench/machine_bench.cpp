@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "engine/grid/lanes.hpp"
 #include "tests/bench/groups.hpp"
 
 namespace {
@@ -51,7 +52,7 @@ void triad(benchmark::State& state) {
   for (auto _ : state) {
     double* const to = a.data();
     const double *const x = b.data(), *const y = c.data();
-#pragma GCC ivdep
+    QUICKSAND_INDEPENDENT
     for (std::size_t i = 0; i < n; ++i) to[i] = x[i] + q * y[i];
     benchmark::ClobberMemory();
   }

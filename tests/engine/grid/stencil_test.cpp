@@ -183,8 +183,9 @@ void expect_lanes_agree(const Walls<D>& walls) {
       for (int d = 0; d < D; ++d) {
         const bool last = cell[d] == grid.cells[d] - 1;
         const double xi = k == 0 ? 1e-9 : k == 1 ? 0.5 : k == 2 && last ? 1.3 : part(random);
-        x[d][k] = places[k][d] = grid.origin[d] + (cell[d] + xi) * grid.h;
+        places[k][d] = grid.origin[d] + (cell[d] + xi) * grid.h;
       }
+    for (int d = 0; d < D; ++d) x[d] = lanes_of<kBatch>([&](int k) { return places[k][d]; });
     CellKernel<D, Shape> kernel;
     std::array<BatchLanes, D> cells;
     for (int d = 0; d < D; ++d) cells[d] = all_lanes<BatchLanes>(cell[d]);

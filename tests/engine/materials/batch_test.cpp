@@ -47,10 +47,10 @@ void expect_lanes_agree(const std::array<SoilMaterial, 2>& soils, double rate) {
       soil[k] = &soils[trial % 3 == 0 ? k % 2 : 0];
       alone[k] = some_state<D>(trial % 4);
       set_lane(lanes, k, alone[k]);
-      n[k] = 0.4 + any(0.05);
+      set_lane(n, k, 0.4 + any(0.05));
       Gradient<D> gradient;
       for (int i = 0; i < D; ++i)
-        for (int j = 0; j < D; ++j) l[i][j][k] = gradient[i][j] = any(rate);
+        for (int j = 0; j < D; ++j) set_lane(l[i][j], k, gradient[i][j] = any(rate));
       if (k < count) update_state<D>(*soil[k], alone[k], n[k], gradient, kStep);
     }
     update_states<D>(soil, count, lanes, n, l, kStep, BatchLanes{});
@@ -94,7 +94,7 @@ TEST(PrincipalLanes, MakeTheTensorAgain) {
     Stress<3, BatchLanes> s;
     for (auto& component : s)
       for (int k = 0; k < kBatch; ++k)
-        component[k] = trial % 5 == 4 && any(1) > 0 ? 0 : any(1) * std::pow(10, any(6));
+        set_lane(component, k, trial % 5 == 4 && any(1) > 0 ? 0 : any(1) * std::pow(10, any(6)));
     if (trial % 7 == 0)  // squares of nothing
       for (auto& component : s) component *= 1e-170;
     if (trial % 3 == 0) s[1] = s[0];

@@ -187,7 +187,8 @@ TEST(Axial, LedgerClosesWhileAHeapCollapses) {
 template <class Velocity>
 void set_velocity(State<2>& s, int d, Velocity&& v) {
   for_each_cell(s.grid, [&](int i, const Cell<2>&) {
-    s.sums[d][i].water_momentum = s.sums[d][i].water_mass * v(s.grid.face_radius(d, i));
+    MassSum& water = s.sums[d].water[i];
+    water.momentum = water.mass * v(s.grid.face_radius(d, i));
   });
 }
 
