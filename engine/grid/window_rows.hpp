@@ -110,21 +110,33 @@ QUICKSAND_INLINE RowFactors<WindowRows<d, D>::count> row_weights(const Kernel& k
 template <int rows>
 using RowSums = std::array<Lanes<8>, rows>;
 
-/// Adds along(k) × factor[row][k] of the points `from` to `to`. So many rows at once as registers hold.
+/// What a kind of pair goes with: a factor by rows, and along(k) for point k.
+template <int rows, class Along>
+struct Term {
+  const RowFactors<rows>& factor;
+  Along along;
+};
 template <std::size_t rows, class Along>
-QUICKSAND_INLINE void add_points(std::array<Lanes<8>, rows>& sums, const std::array<Kept<>, rows>& factor,
-                                 int from, int to, const Along& along) {
-  constexpr int all = static_cast<int>(rows), some = kRegister == 8 || all < 6 ? all : 6;
-  each<(all + some - 1) / some>([&](auto part) __attribute__((always_inline)) {
-    constexpr int first = part * some, count = std::min(some, all - first);
-    std::array<Lanes<8>, count> sum;
-    each<count>([&](auto r) __attribute__((always_inline)) { sum[r] = sums[first + r]; });
-    for (int k = from; k < to; ++k) {
-      const Lanes<8> a = along(k);
-      each<count>([&](auto r) __attribute__((always_inline)) { sum[r] += factor[first + r][k] * a; });
-    }
+Term(const std::array<Kept<>, rows>&, Along) -> Term<static_cast<int>(rows), Along>;
+
+/// Σ of along(k) × factor[row][k] over the points `from` to `to` and all terms. So many rows at once as
+/// registers hold.
+template <int rows, class... Along>
+QUICKSAND_INLINE RowSums<rows> sum_points(int from, int to, const Term<rows, Along>&... terms) {
+  RowSums<rows> sums;
+  constexpr int some = kRegister == 8 || rows < 6 ? rows : 6;
+  each<(rows + some - 1) / some>([&](auto part) __attribute__((always_inline)) {
+    constexpr int first = part * some, count = std::min(some, rows - first);
+    std::array<Lanes<8>, count> sum{};
+    const auto add = [&](int k, const auto& term) __attribute__((always_inline)) {
+      const Lanes<8> along = term.along(k);
+      each<count>([&](auto r)
+                      __attribute__((always_inline)) { sum[r] += term.factor[first + r][k] * along; });
+    };
+    for (int k = from; k < to; ++k) (add(k, terms), ...);
     each<count>([&](auto r) __attribute__((always_inline)) { sums[first + r] = sum[r]; });
   });
+  return sums;
 }
 
 /// Adds the sums of a window of component d to the faces. Folded at walls, `mirrored(face, mass)` is told

@@ -174,10 +174,15 @@ class Blocks {
   /// Number of an active block, from its place; −1 if it is not active.
   int number_of(int block) const { return number_[block] - 1; }
 
-  /// f(number) for all active blocks, one colour after the other.
-  template <class F>
-  void by_color(F&& f) const {
-    for (const auto& blocks : of_color_) parallel(blocks.size(), [&](std::size_t i) { f(blocks[i]); });
+  /// f(number) for all active blocks, one colour after the other; before each, `soon` of one that comes a
+  /// little later on the same thread, mostly.
+  template <class F, class Soon>
+  void by_color(F&& f, Soon&& soon) const {
+    for (const auto& blocks : of_color_)
+      parallel(blocks.size(), [&](std::size_t i) {
+        if (i + 1 < blocks.size()) soon(blocks[i + 1]);
+        f(blocks[i]);
+      });
   }
   /// f(number) for all active blocks in any order.
   template <class F>

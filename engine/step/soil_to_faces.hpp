@@ -94,29 +94,29 @@ QUICKSAND_INLINE void soil_to_component(State<D>& s, const PointBatch<D>& batch,
   FaceSumFields& to = s.sums[d];
   windows.each(
       batch, [&](const auto& window, int from, int to_) __attribute__((always_inline)) {
-        const auto add = [&](const auto& sums, auto& field, const auto& mirrored)
-            __attribute__((always_inline)) {
-          add_to_faces<d>(s.grid, window, sums, field, mirrored);
-        };
-        const auto nothing = [](int, double) {};
-        add(mass.sums(nodes.w, from, to_), to.soil,
-            [&](int face, double mirrored) { s.image[d][face].soil += 2 * mirrored; });
-        RowSums<WindowRows<d, D>::count> sums{};
-        add_points(
-            sums, mass.weight, from, to_, [&](int k) __attribute__((always_inline)) {
-              return nodes.w[k] * resistivity[k] + nodes.dw[k] * own[k];
-            });
-        add_points(
-            sums, across, from,
-            to_, [&](int k) __attribute__((always_inline)) { return nodes.w[k] * second_of_pairs(1); });
-        add(sums, to.force, nothing);
-        if (!s.has_water) return;
-        RowSums<WindowRows<d, D>::count> taken{};
-        add_points(
-            taken, mass.weight, from,
-            to_, [&](int k) __attribute__((always_inline)) { return nodes.w[k] * room[k]; });
-        add(taken, to.room, nothing);
-      });
+    const auto add = [&](const auto& sums, auto& field, const auto& mirrored) __attribute__((always_inline)) {
+      add_to_faces<d>(s.grid, window, sums, field, mirrored);
+    };
+    const auto nothing = [](int, double) {};
+    add(mass.sums(nodes.w, from, to_), to.soil,
+        [&](int face, double mirrored) { s.image[d][face].soil += 2 * mirrored; });
+        add(sum_points(from, to_,
+                       Term{mass.weight,
+                            [&](int k) __attribute__((always_inline)) {
+                              return nodes.w[k] * resistivity[k] + nodes.dw[k] * own[k];
+                            }
+}
+, Term{across, [&](int k) __attribute__((always_inline)){return nodes.w[k] * second_of_pairs(1);
+}
+}),
+            to.force, nothing);
+if (!s.has_water) return;
+const Term taken{mass.weight, [&](int k) __attribute__((always_inline)){return nodes.w[k] * room[k];
+}
+}
+;
+add(sum_points(from, to_, taken), to.room, nothing);
+});
 }
 
 /// What a batch takes of the cells' room.
@@ -129,15 +129,14 @@ QUICKSAND_INLINE void soil_to_cells(State<D>& s, const PointBatch<D>& batch, con
   const auto weight = row_weights<0, D>(kernel);
   cells.each(
       batch, [&](const auto& window, int from, int to) __attribute__((always_inline)) {
-        RowSums<WindowRows<0, D>::count> sums{};
-        add_points(
-            sums, weight, from,
-            to, [&](int k) __attribute__((always_inline)) { return centers[k] * room[k]; });
-        for_centers_of<D>(
-            window, sums, [&](int cell, const double* pair) __attribute__((always_inline)) {
-              add_lanes<2>(s.cell_sums[cell].grains, lanes_from<2>(*pair));
-            });
-      });
+        const auto sums = sum_points(
+            from, to, Term{weight, [&](int k) __attribute__((always_inline)) { return centers[k] * room[k]; }
+});
+for_centers_of<D>(
+    window, sums, [&](int cell, const double* pair) __attribute__((always_inline)) {
+      add_lanes<2>(s.cell_sums[cell].grains, lanes_from<2>(*pair));
+    });
+});
 }
 
 template <class S, int D>

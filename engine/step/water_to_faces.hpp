@@ -26,12 +26,11 @@ void water_to_faces(State<D>& s, const PointBatch<D>& batch) {
   const auto weight = row_weights<0, D>(kernel);
   windows.each(
       batch, [&](const auto& window, int from, int to) __attribute__((always_inline)) {
-        RowSums<WindowRows<0, D>::count> volumes{};
-        add_points(
-            volumes, weight, from,
-            to, [&](int k) __attribute__((always_inline)) { return centers[k] * volume[k]; });
-        for_centers_of<D>(window, volumes, [&](int cell, const double* v) { s.cell_sums[cell].water += *v; });
-      });
+        const auto volumes = sum_points(
+            from, to, Term{weight, [&](int k) __attribute__((always_inline)) { return centers[k] * volume[k]; }
+});
+for_centers_of<D>(window, volumes, [&](int cell, const double* v) { s.cell_sums[cell].water += *v; });
+});
 }
 
 }  // namespace quicksand

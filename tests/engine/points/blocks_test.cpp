@@ -124,7 +124,7 @@ void expect_colors_apart(const Grid<D>& grid) {
     });
   // by_color takes one colour after the other: a colour never comes back once left.
   std::vector<int> order;
-  with_threads(1, [&] { blocks.by_color([&](int b) { order.push_back(color_of(b)); }); });
+  with_threads(1, [&] { blocks.by_color([&](int b) { order.push_back(color_of(b)); }, [](int) {}); });
   EXPECT_EQ(static_cast<int>(order.size()), blocks.count());
   EXPECT_TRUE(std::is_sorted(order.begin(), order.end()));
 }
@@ -136,10 +136,12 @@ TEST(Blocks, ByColorAndAllVisitEveryBlockOnce) {
   const Blocks<3> blocks = all_blocks(uneven_grid<3>());
   std::mutex mutex;
   std::multiset<int> colored, all;
-  blocks.by_color([&](int b) {
-    const std::lock_guard lock(mutex);
-    colored.insert(b);
-  });
+  blocks.by_color(
+      [&](int b) {
+        const std::lock_guard lock(mutex);
+        colored.insert(b);
+      },
+      [](int) {});
   blocks.all([&](int b) {
     const std::lock_guard lock(mutex);
     all.insert(b);
@@ -148,6 +150,20 @@ TEST(Blocks, ByColorAndAllVisitEveryBlockOnce) {
   for (int b = 0; b < blocks.count(); ++b) expected.insert(b);
   EXPECT_EQ(colored, expected);
   EXPECT_EQ(all, expected);
+}
+
+TEST(Blocks, OneThatComesSoonIsSaidBeforeTheOneThatIs) {
+  const Blocks<2> blocks = all_blocks(uneven_grid<2>());
+  std::vector<int> done, said;
+  with_threads(1, [&] {
+    blocks.by_color([&](int b) { done.push_back(b); },
+                    [&](int next) {
+                      said.push_back(next);
+                      EXPECT_EQ(std::count(done.begin(), done.end(), next), 0);
+                    });
+  });
+  EXPECT_EQ(said.size() + Blocks<2>::kColors, done.size());  // all but the first of each colour
+  for (const int b : said) EXPECT_EQ(std::count(done.begin(), done.end(), b), 1);
 }
 
 TEST(Blocks, SumIsTakenInTheOrderOfTheBlocks) {
