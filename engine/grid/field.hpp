@@ -25,7 +25,7 @@ struct ZeroPages {
   ZeroPages(const ZeroPages<U>&) {}
 
   T* allocate(std::size_t n) {
-#if defined(__SANITIZE_ADDRESS__)
+#if defined(QUICKSAND_ADDRESS_SANITIZER)
     // From the heap, so that the sanitizer sees where an array ends.
     void* at = ::operator new (n * sizeof(T), std::align_val_t{alignof(T)});
     std::memset(at, 0, n * sizeof(T));
@@ -37,7 +37,7 @@ struct ZeroPages {
     return static_cast<T*>(at);
   }
   void deallocate(T* at, [[maybe_unused]] std::size_t n) {
-#if defined(__SANITIZE_ADDRESS__)
+#if defined(QUICKSAND_ADDRESS_SANITIZER)
     ::operator delete (at, std::align_val_t{alignof(T)});
 #else
     munmap(at, n * sizeof(T));
@@ -59,7 +59,7 @@ struct ZeroPages {
 /// much time to find as a small one. Where little is touched they would fill the empty parts.
 template <class T>
 void wish_large_pages([[maybe_unused]] std::vector<T, ZeroPages<T>>& field) {
-#if !defined(__SANITIZE_ADDRESS__)
+#if !defined(QUICKSAND_ADDRESS_SANITIZER)
   if (!field.empty()) madvise(field.data(), field.size() * sizeof(T), MADV_HUGEPAGE);
 #endif
 }
