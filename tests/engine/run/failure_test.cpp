@@ -52,9 +52,10 @@ TEST(Failure, AFixedStepFarTooLargeDiverges) {
   expect_clean(r.results);
 }
 
-/// A plate driven into saturated soil that fills a box from wall to wall; its water cannot be compressed.
+/// A plate driven into saturated soil that fills a box from wall to wall; its water cannot be compressed. How
+/// soon that shows is a matter of rounding.
 TEST(Failure, WaterWithoutRoomIsNamed) {
-  Scene s = plane(0.4, 0.6, 0.1, 0.1);
+  Scene s = plane(0.4, 0.6, 0.1, 1);
   add_body(s, "bed", BodyKind::saturated_soil, {0, 0, 0}, {0.4, 0.4, 0});
   s.water.bulk_modulus.reset();
   Load plate;
