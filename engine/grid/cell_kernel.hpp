@@ -30,7 +30,7 @@ QUICKSAND_INLINE WindowNodes<n> in_window(const Nodes<m, BatchLanes>& nodes) {
   const auto low = nodes.first < -0.5;
   const BatchLanes none{};
   each<n>([&](auto i) __attribute__((always_inline)) {
-    constexpr bool first = i<m, second = i> 0 && i <= m;  // which of the two may reach it
+    constexpr bool first = (i < m), second = (i > 0) && (i <= m);  // which of the two may reach it
     constexpr int a = first ? i : 0, b = second ? i - 1 : 0;
     out.w[i] = where(low, first ? nodes.w[a] : none, second ? nodes.w[b] : none);
     out.dw[i] = where(low, first ? nodes.dw[a] : none, second ? nodes.dw[b] : none);

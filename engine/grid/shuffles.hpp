@@ -152,12 +152,10 @@ QUICKSAND_INLINE std::array<BatchLanes, n> columns(const double* first, int coun
     column[i] = __builtin_shufflevector(m == 0 ? part[m] : column[i], part[m],
                                         ((n * k + i) / kBatch == m ? kBatch + (n * k + i) % kBatch : k)...);
   };
-  const auto merge_all = [&]<int... im>(std::integer_sequence<int, im...>) __attribute__((always_inline)) {
-    (merge(std::integral_constant<int, im / n>{}, std::integral_constant<int, im % n>{},
-           std::make_integer_sequence<int, kBatch>{}),
-     ...);
-  };
-  merge_all(std::make_integer_sequence<int, n * n>{});
+  each<n * n>([&](auto im) __attribute__((always_inline)) {
+    merge(std::integral_constant<int, im / n>{}, std::integral_constant<int, im % n>{},
+          std::make_integer_sequence<int, kBatch>{});
+  });
 #else
   if constexpr (n == 2) {
     column = parted<kBatch>(some_lanes_from(first, 2 * count),

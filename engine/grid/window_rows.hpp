@@ -114,10 +114,10 @@ using RowSums = std::array<Lanes<8>, rows>;
 template <int rows, class Along>
 struct Term {
   const RowFactors<rows>& factor;
-  Along along;
+  const Along& along;
 };
 template <std::size_t rows, class Along>
-Term(const std::array<Kept<>, rows>&, Along) -> Term<static_cast<int>(rows), Along>;
+Term(const std::array<Kept<>, rows>&, const Along&) -> Term<static_cast<int>(rows), Along>;
 
 /// Σ of along(k) × factor[row][k] over the points `from` to `to` and all terms. So many rows at once as
 /// registers hold.

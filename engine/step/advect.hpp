@@ -35,6 +35,7 @@ class VelocityWindow {
       each<Rows::count>([&](auto r) __attribute__((always_inline)) { row_[r] = &gathered_[16 * r]; });
     }
   }
+  VelocityWindow(const VelocityWindow&) = delete;  // its rows may lie in it
   QUICKSAND_INLINE double old(auto x, auto y, auto z) const { return row(x, y, z)[members.old]; }
   QUICKSAND_INLINE double now(auto x, auto y, auto z) const { return row(x, y, z)[members.now]; }
 

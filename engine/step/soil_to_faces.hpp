@@ -91,32 +91,24 @@ QUICKSAND_INLINE void soil_to_component(State<D>& s, const PointBatch<D>& batch,
   const auto across = forces_across<S, d, D>(kernel, share, hoop);
   const PairsByPoint resistivity(share.resistivity, BatchLanes{}), own(BatchLanes{}, share.row(d, 0)),
       room(share.grains, share.bulk);
-  FaceSumFields& to = s.sums[d];
+  const auto stressed = [&](int k) __attribute__((always_inline)) {
+    return nodes.w[k] * resistivity[k] + nodes.dw[k] * own[k];
+  };
+  const auto stressed_across = [&](int k) __attribute__((always_inline)) {
+    return nodes.w[k] * second_of_pairs(1);
+  };
+  const auto taken = [&](int k) __attribute__((always_inline)) { return nodes.w[k] * room[k]; };
+  const auto mirrored = [&](int face, double m) { s.image[d][face].soil += 2 * m; };
+  const auto nothing = [](int, double) {};
+  FaceSumFields& sums = s.sums[d];
   windows.each(
-      batch, [&](const auto& window, int from, int to_) __attribute__((always_inline)) {
-    const auto add = [&](const auto& sums, auto& field, const auto& mirrored) __attribute__((always_inline)) {
-      add_to_faces<d>(s.grid, window, sums, field, mirrored);
-    };
-    const auto nothing = [](int, double) {};
-    add(mass.sums(nodes.w, from, to_), to.soil,
-        [&](int face, double mirrored) { s.image[d][face].soil += 2 * mirrored; });
-        add(sum_points(from, to_,
-                       Term{mass.weight,
-                            [&](int k) __attribute__((always_inline)) {
-                              return nodes.w[k] * resistivity[k] + nodes.dw[k] * own[k];
-                            }
-}
-, Term{across, [&](int k) __attribute__((always_inline)){return nodes.w[k] * second_of_pairs(1);
-}
-}),
-            to.force, nothing);
-if (!s.has_water) return;
-const Term taken{mass.weight, [&](int k) __attribute__((always_inline)){return nodes.w[k] * room[k];
-}
-}
-;
-add(sum_points(from, to_, taken), to.room, nothing);
-});
+      batch, [&](const auto& window, int from, int to) __attribute__((always_inline)) {
+        add_to_faces<d>(s.grid, window, mass.sums(nodes.w, from, to), sums.soil, mirrored);
+        const auto force = sum_points(from, to, Term(mass.weight, stressed), Term(across, stressed_across));
+        add_to_faces<d>(s.grid, window, force, sums.force, nothing);
+        if (!s.has_water) return;
+        add_to_faces<d>(s.grid, window, sum_points(from, to, Term(mass.weight, taken)), sums.room, nothing);
+      });
 }
 
 /// What a batch takes of the cells' room.
@@ -127,16 +119,14 @@ QUICKSAND_INLINE void soil_to_cells(State<D>& s, const PointBatch<D>& batch, con
   const BatchWindows<D> cells(s.grid, s.water_walls, batch);
   const PairsByPoint room(share.grains, share.bulk);
   const auto weight = row_weights<0, D>(kernel);
+  const auto taken = [&](int k) __attribute__((always_inline)) { return centers[k] * room[k]; };
+  const auto add = [&](int cell, const double* pair) __attribute__((always_inline)) {
+    add_lanes<2>(s.cell_sums[cell].grains, lanes_from<2>(*pair));
+  };
   cells.each(
       batch, [&](const auto& window, int from, int to) __attribute__((always_inline)) {
-        const auto sums = sum_points(
-            from, to, Term{weight, [&](int k) __attribute__((always_inline)) { return centers[k] * room[k]; }
-});
-for_centers_of<D>(
-    window, sums, [&](int cell, const double* pair) __attribute__((always_inline)) {
-      add_lanes<2>(s.cell_sums[cell].grains, lanes_from<2>(*pair));
-    });
-});
+        for_centers_of<D>(window, sum_points(from, to, Term(weight, taken)), add);
+      });
 }
 
 template <class S, int D>

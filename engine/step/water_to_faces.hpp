@@ -24,13 +24,12 @@ void water_to_faces(State<D>& s, const PointBatch<D>& batch) {
   });
   const Kept<> volume = mass / s.constants.water_density;
   const auto weight = row_weights<0, D>(kernel);
+  const auto filled = [&](int k) __attribute__((always_inline)) { return centers[k] * volume[k]; };
+  const auto add = [&](int cell, const double* of) { s.cell_sums[cell].water += *of; };
   windows.each(
       batch, [&](const auto& window, int from, int to) __attribute__((always_inline)) {
-        const auto volumes = sum_points(
-            from, to, Term{weight, [&](int k) __attribute__((always_inline)) { return centers[k] * volume[k]; }
-});
-for_centers_of<D>(window, volumes, [&](int cell, const double* v) { s.cell_sums[cell].water += *v; });
-});
+        for_centers_of<D>(window, sum_points(from, to, Term(weight, filled)), add);
+      });
 }
 
 }  // namespace quicksand
