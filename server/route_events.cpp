@@ -14,7 +14,7 @@ using Steady = std::chrono::steady_clock;
 
 /// Between two signs of life on a silent stream; proxies give up after a minute.
 constexpr std::chrono::seconds heartbeat{15};
-constexpr int full_retry_s = 10;  ///< s, `Retry-After` when all streams are taken
+constexpr int full_streams_retry_s = 10;  ///< s, `Retry-After` when all streams are taken
 
 struct Stream {
   Service& service;
@@ -73,7 +73,7 @@ void get_run_events(Service& service, const Call& call, httplib::Response& respo
                             named_limit(service.settings, &Settings::max_streams) + "; poll instead",
                         {},
                         {},
-                        full_retry_s}};
+                        full_streams_retry_s}};
   response.set_header("Cache-Control", "no-store");
   response.set_header("X-Accel-Buffering", "no");
   auto stream = std::make_shared<Stream>(Stream{service, run.id, seen, std::move(place)});

@@ -13,7 +13,7 @@ namespace {
 
 /// Bytes held in memory per download.
 constexpr std::size_t chunk_bytes = 1 << 16;
-constexpr int full_retry_s = 5;  ///< s, `Retry-After` when all downloads are taken
+constexpr int full_downloads_retry_s = 5;  ///< s, `Retry-After` when all downloads are taken
 
 const char* media_type(const std::string& name) {
   if (name.ends_with(".json")) return "application/json";
@@ -35,7 +35,7 @@ void stream(Service& service, const Call& call, std::shared_ptr<const ReadOnlyFi
                         "too many downloads: " + named_limit(service.settings, &Settings::max_downloads),
                         {},
                         {},
-                        full_retry_s}};
+                        full_downloads_retry_s}};
   response.set_content_provider(
       count, type,
       [file, first, place = std::move(place), buffer = std::make_shared<std::vector<char>>(chunk_bytes)](

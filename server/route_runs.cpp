@@ -18,7 +18,7 @@ constexpr std::size_t max_key_bytes = 255;
 constexpr int default_page = 50;
 constexpr int max_priority = 10;
 constexpr int max_trial_s = 5;
-constexpr int full_retry_s = 60;  ///< s, `Retry-After` of a full queue
+constexpr int full_queue_retry_s = 60;  ///< s, `Retry-After` of a full queue
 
 constexpr int default_budget_s = 600, max_budget_s = 1'000'000;  ///< s of CPU time of a tradeoff
 
@@ -155,13 +155,13 @@ void post_run(Service& service, const Call& call, httplib::Response& response) {
                               named_limit(service.settings, &Settings::max_runs_per_key),
                           {},
                           {},
-                          full_retry_s}};
+                          full_queue_retry_s}};
     case CreateOutcome::Kind::full:
       throw ProblemError{{503,
                           "the queue is full: " + named_limit(service.settings, &Settings::max_queued),
                           {},
                           {},
-                          full_retry_s}};
+                          full_queue_retry_s}};
     case CreateOutcome::Kind::created:
       spdlog::info("run={} queued owner={} name={}", outcome.run->id, quoted(outcome.run->owner),
                    quoted(outcome.run->name));

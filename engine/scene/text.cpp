@@ -1,6 +1,7 @@
 #include "engine/scene/text.hpp"
 
 #include <charconv>
+#include <cstdio>
 
 namespace quicksand {
 
@@ -11,6 +12,12 @@ std::string text(double value) {
   const auto end =
       std::to_chars(buffer, buffer + sizeof buffer, value == 0 ? 0.0 : value, std::chars_format::general, 9);
   return std::string(buffer, end.ptr);
+}
+
+std::string text(double value, const char* form) {
+  char words[48];
+  std::snprintf(words, sizeof words, form, value);
+  return words;
 }
 
 std::string text(const Scene& scene, const Vec3& point) {

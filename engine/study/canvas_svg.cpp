@@ -1,15 +1,11 @@
-#include <cstdio>
 
+#include "engine/scene/text.hpp"
 #include "engine/study/canvas.hpp"
 
 namespace quicksand {
 namespace {
 
-std::string number(double value) {
-  char words[48];
-  std::snprintf(words, sizeof words, "%.5g", value);
-  return words;
-}
+std::string place(double value) { return text(value, "%.5g"); }
 
 std::string escaped(const std::string& plain) {
   std::string text;
@@ -26,22 +22,22 @@ class SvgCanvas final : public Canvas {
               "<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n") {}
 
   void line(Spot from, Spot to, const std::string& colour) override {
-    text_ += "<line x1=\"" + number(from.x) + "\" y1=\"" + number(from.y) + "\" x2=\"" + number(to.x) +
-             "\" y2=\"" + number(to.y) + "\" stroke=\"" + colour + "\"/>\n";
+    text_ += "<line x1=\"" + place(from.x) + "\" y1=\"" + place(from.y) + "\" x2=\"" + place(to.x) +
+             "\" y2=\"" + place(to.y) + "\" stroke=\"" + colour + "\"/>\n";
   }
   void path(const std::vector<Spot>& corners, const std::string& colour) override {
     text_ += "<polyline fill=\"none\" stroke=\"" + colour + "\" points=\"";
-    for (const Spot& corner : corners) text_ += number(corner.x) + "," + number(corner.y) + " ";
+    for (const Spot& corner : corners) text_ += place(corner.x) + "," + place(corner.y) + " ";
     text_ += "\"/>\n";
   }
   void disc(Spot centre, double radius, const std::string& colour) override {
-    text_ += "<circle cx=\"" + number(centre.x) + "\" cy=\"" + number(centre.y) + "\" r=\"" + number(radius) +
+    text_ += "<circle cx=\"" + place(centre.x) + "\" cy=\"" + place(centre.y) + "\" r=\"" + place(radius) +
              "\" fill=\"" + colour + "\"/>\n";
   }
   void words(Spot at, const std::string& text, double size, Anchor anchor,
              const std::string& colour) override {
     const char* where = anchor == Anchor::start ? "start" : anchor == Anchor::end ? "end" : "middle";
-    text_ += "<text x=\"" + number(at.x) + "\" y=\"" + number(at.y) + "\" font-size=\"" + number(size) +
+    text_ += "<text x=\"" + place(at.x) + "\" y=\"" + place(at.y) + "\" font-size=\"" + place(size) +
              "\" text-anchor=\"" + where + "\" fill=\"" + colour + "\">" + escaped(text) + "</text>\n";
   }
   std::string finish() override { return text_ + "</svg>\n"; }

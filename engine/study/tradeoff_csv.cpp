@@ -1,29 +1,20 @@
 // The ladder as a table, and references read from one.
 
-#include <cstdio>
 #include <sstream>
 #include <stdexcept>
 
+#include "engine/scene/text.hpp"
 #include "engine/study/tradeoff.hpp"
 
 namespace quicksand {
-namespace {
-
-std::string number(double value, const char* form = "%.4g") {
-  char words[48];
-  std::snprintf(words, sizeof words, form, value);
-  return words;
-}
-
-}  // namespace
 
 std::string tradeoff_csv(const Tradeoff& tradeoff) {
   std::string csv = "factor,setting,error,cpu_seconds,memory_bytes,steps,point_steps,front,note\n";
   for (const RungResult& r : tradeoff.rungs) {
     const bool known = r.missing.empty();
-    csv += r.factor + "," + r.setting + "," + (known && !r.reference ? number(r.error) : "") + "," +
-           number(r.cpu_seconds) + "," + number(r.memory_bytes) + "," + number(r.steps, "%.0f") + "," +
-           number(r.point_steps) + "," + (r.on_front ? "1" : "0") + "," +
+    csv += r.factor + "," + r.setting + "," + (known && !r.reference ? text(r.error, "%.4g") : "") + "," +
+           text(r.cpu_seconds, "%.4g") + "," + text(r.memory_bytes, "%.4g") + "," + text(r.steps, "%.0f") +
+           "," + text(r.point_steps, "%.4g") + "," + (r.on_front ? "1" : "0") + "," +
            (r.reference ? "reference" : r.missing) + "\n";
   }
   return csv;

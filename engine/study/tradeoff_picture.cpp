@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
+#include "engine/scene/text.hpp"
 #include "engine/study/canvas.hpp"
 #include "engine/study/tradeoff.hpp"
 
@@ -15,12 +15,6 @@ constexpr double kLeft = 60, kRight = 350, kTop = 44, kBottom = 48;
 constexpr double kTitle = 14, kWords = 11, kRow = 17, kRadius = 4;
 constexpr const char *kFront = "#cc3333", *kRest = "#557799", *kGrid = "#dddddd", *kInk = "#222222",
                      *kFaint = "#999999";
-
-std::string number(double value, const char* form = "%.3g") {
-  char words[48];
-  std::snprintf(words, sizeof words, form, value);
-  return words;
-}
 
 bool drawable(const RungResult& r) {
   return r.missing.empty() && !r.reference && r.error > 0 && r.cpu_seconds > 0;
@@ -48,13 +42,13 @@ void draw_axes(Canvas& canvas, const Decades& along, const Decades& up) {
     const double x = static_cast<double>(d - along.low) / (along.high - along.low);
     canvas.line(place(x, 0), place(x, 1), kGrid);
     const Spot foot = place(x, 0);
-    canvas.words({foot.x, foot.y + 16}, number(std::pow(10, d)), kWords, Anchor::middle, kInk);
+    canvas.words({foot.x, foot.y + 16}, text(std::pow(10, d), "%.3g"), kWords, Anchor::middle, kInk);
   }
   for (int d = up.low; d <= up.high; ++d) {
     const double y = static_cast<double>(d - up.low) / (up.high - up.low);
     canvas.line(place(0, y), place(1, y), kGrid);
     const Spot foot = place(0, y);
-    canvas.words({foot.x - 6, foot.y + 4}, number(std::pow(10, d)), kWords, Anchor::end, kInk);
+    canvas.words({foot.x - 6, foot.y + 4}, text(std::pow(10, d), "%.3g"), kWords, Anchor::end, kInk);
   }
   canvas.words({place(0.5, 0).x, kHeight - 12}, "CPU time, s", kWords, Anchor::middle, kInk);
   canvas.words({8, kTop - 8}, "error, of the largest range", kWords, Anchor::start, kInk);
@@ -106,7 +100,7 @@ void draw_list(Canvas& canvas, const std::vector<const RungResult*>& shown, cons
   };
   for (std::size_t k = 0; k < shown.size(); ++k)
     row(std::to_string(k + 1), *shown[k],
-        number(shown[k]->error) + ", " + number(shown[k]->cpu_seconds) + " s",
+        text(shown[k]->error, "%.3g") + ", " + text(shown[k]->cpu_seconds, "%.3g") + " s",
         shown[k]->on_front ? kFront : kInk);
   for (const RungResult& r : tradeoff.rungs)
     if (!drawable(r))

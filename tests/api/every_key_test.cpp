@@ -12,21 +12,13 @@
 #include "api/scene_to_json.hpp"
 #include "api/schema_check.hpp"
 #include "tests/api/heave_case.hpp"
+#include "tests/api/schema_text.hpp"
 
 namespace quicksand {
 namespace {
 
 using nlohmann::json;
-
-const json& schema() {
-  static const json text = json::parse(case_schema());
-  return text;
-}
-
-const json& resolved(const json& node) {
-  return node.contains("$ref") ? schema().at(json::json_pointer(node["$ref"].get<std::string>().substr(1)))
-                               : node;
-}
+using test::resolved, test::schema;
 
 /// Keys by the place of the schema that describes them ("soil/porosity"), each once however often it occurs.
 using Keys = std::set<std::string>;

@@ -2,21 +2,18 @@
 
 #include <nlohmann/json.hpp>
 
-#include "tests/api/heave_case.hpp"
+#include "tests/api/case_faults.hpp"
 
 namespace quicksand {
 namespace {
 
 using nlohmann::json;
+using test::patched;
 
 Scene sound(const std::string& text, const std::optional<Preset>& preset = {}) {
   ParsedCase parsed = parse_case(text, preset);
   EXPECT_TRUE(parsed.scene.has_value()) << test::said(parsed.faults);
   return parsed.scene.value_or(Scene{});
-}
-
-std::string patched(const char* patch) {
-  return json::parse(test::heave_case()).patch(json::parse(patch)).dump();
 }
 
 TEST(RoundTrip, ResolvedCaseIsAFixedPoint) {

@@ -9,21 +9,13 @@
 #include "api/case_json.hpp"
 #include "api/openapi.hpp"
 #include "api/words.hpp"
+#include "tests/api/schema_text.hpp"
 
 namespace quicksand {
 namespace {
 
 using nlohmann::json;
-
-const json& schema() {
-  static const json text = json::parse(case_schema());
-  return text;
-}
-
-const json& resolved(const json& node) {
-  return node.contains("$ref") ? schema().at(json::json_pointer(node["$ref"].get<std::string>().substr(1)))
-                               : node;
-}
+using test::resolved, test::schema;
 
 /// Calls f(node, where) for every schema node of the document.
 void walk(const json& node, const std::string& where,

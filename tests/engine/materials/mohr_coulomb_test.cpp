@@ -1,7 +1,5 @@
 // The return of principal stresses against closed forms, and what must hold for any trial.
 
-#include "engine/materials/mohr_coulomb.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,21 +8,15 @@
 #include <numbers>
 #include <random>
 
+#include "tests/engine/materials/mohr_coulomb_law.hpp"
+
 namespace quicksand {
 namespace {
 
+using test::kElastic;
+using test::law;
+using test::yield;
 using Principal = std::array<double, 3>;
-
-const Elastic kElastic = Elastic::from_young(1e7, 0.3);
-
-MohrCoulomb law(double phi, double psi, double cohesion) {
-  constexpr double kRadians = std::numbers::pi / 180;
-  return {std::sin(phi * kRadians), std::cos(phi * kRadians), std::sin(psi * kRadians), cohesion};
-}
-
-double yield(const MohrCoulomb& m, const Principal& s) {
-  return s[0] - s[2] + (s[0] + s[2]) * m.sin_phi - 2 * m.cohesion * m.cos_phi;
-}
 
 void expect_stress(const Principal& stress, const Principal& expected, double tolerance) {
   for (int a = 0; a < 3; ++a) EXPECT_NEAR(stress[a], expected[a], tolerance) << a;

@@ -4,28 +4,20 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <random>
 #include <vector>
 
 #include "engine/materials/soil_material.hpp"
+#include "tests/engine/materials/mohr_coulomb_law.hpp"
 #include "tests/engine/small_scene.hpp"
 
 namespace quicksand {
 namespace {
 
+using test::kElastic;
+using test::law;
+using test::yield;
 using Values = std::array<double, 3>;
-
-const Elastic kElastic = Elastic::from_young(1e7, 0.3);
-
-MohrCoulomb law(double phi, double psi, double cohesion, double tension) {
-  constexpr double kRadians = std::numbers::pi / 180;
-  return {std::sin(phi * kRadians), std::cos(phi * kRadians), std::sin(psi * kRadians), cohesion, tension};
-}
-
-double yield(const MohrCoulomb& m, const Values& s) {
-  return s[0] - s[2] + (s[0] + s[2]) * m.sin_phi - 2 * m.cohesion * m.cos_phi;
-}
 
 TEST(TensionCutoff, UniaxialStretchStopsAtTheCutoff) {
   // σ1 alone above T: only ε1 is plastic, σ2 and σ3 fall with Poisson's ratio.

@@ -11,7 +11,7 @@ namespace quicksand {
 namespace {
 
 /// 40 by 24 cells, half of them saturated; cells 1.5 and 3 times as large do not fit.
-Scene bed() {
+Scene shallow_bed() {
   Scene scene = test::plane(0.4, 0.24, 0.01, 0.02);
   test::add_body(scene, "bed", BodyKind::saturated_soil, {0, 0, 0}, {0.4, 0.12, 0});
   scene.soils.at("sand").model.law = SoilLaw::linear_elastic;
@@ -31,7 +31,7 @@ SettingsChoice choose(Scene scene, std::optional<double> error, std::optional<do
 }
 
 TEST(ExpectedError, IsThatOfThePresetsAndFallsWithTheCells) {
-  Scene scene = bed();
+  Scene scene = shallow_bed();
   EXPECT_DOUBLE_EQ(expected_error(scene), 0.016);
   double before = 1;
   for (const double factor : {8.0, 4.0, 2.0, 1.5, 1.0, 0.75, 0.5, 0.25, 0.1}) {
@@ -53,7 +53,7 @@ TEST(ExpectedError, GrowsWhereNothingIsResolved) {
 }
 
 TEST(ExpectedError, CountsWhatMayYieldOrRunAway) {
-  Scene scene = bed();
+  Scene scene = shallow_bed();
   EXPECT_EQ(error_class(scene), ErrorClass::smooth);
   scene.soils.at("sand").model.law = SoilLaw::mohr_coulomb;
   EXPECT_EQ(error_class(scene), ErrorClass::yielding);
@@ -72,7 +72,7 @@ TEST(ExpectedError, CountsWhatMayYieldOrRunAway) {
 }
 
 TEST(SettingsChoice, TakesTheLargestCellsWithinTheTargetError) {
-  const SettingsChoice choice = choose(bed(), 0.02, {});
+  const SettingsChoice choice = choose(shallow_bed(), 0.02, {});
   ASSERT_TRUE(choice.scene);
   EXPECT_EQ(choice.scene->numerics.cell_size_factor,
             4.0 / 3);  // the next that fit, twice as large, err by 0.025
@@ -83,17 +83,17 @@ TEST(SettingsChoice, TakesTheLargestCellsWithinTheTargetError) {
 }
 
 TEST(SettingsChoice, TakesTheSmallestCellsWithinTheBudget) {
-  Scene draft = bed(), standard = bed();
+  Scene draft = shallow_bed(), standard = shallow_bed();
   apply_preset(Preset::draft, draft.numerics);
   const double enough = make_plan(standard).seconds;
-  const SettingsChoice choice = choose(bed(), {}, enough * 1.0001);
+  const SettingsChoice choice = choose(shallow_bed(), {}, enough * 1.0001);
   ASSERT_TRUE(choice.scene);
   EXPECT_EQ(choice.scene->numerics.cell_size_factor, 1);
-  const SettingsChoice less = choose(bed(), {}, enough * 0.999);
+  const SettingsChoice less = choose(shallow_bed(), {}, enough * 0.999);
   ASSERT_TRUE(less.scene);
   EXPECT_GT(less.scene->numerics.cell_size_factor, 1);
   EXPECT_LE(make_plan(*less.scene).seconds, enough);
-  const SettingsChoice plenty = choose(bed(), {}, 1e6);
+  const SettingsChoice plenty = choose(shallow_bed(), {}, 1e6);
   ASSERT_TRUE(plenty.scene);
   EXPECT_EQ(plenty.scene->numerics.cell_size_factor, 0.25);
   EXPECT_EQ(plenty.scene->numerics.preset, Preset::fine);
@@ -101,19 +101,19 @@ TEST(SettingsChoice, TakesTheSmallestCellsWithinTheBudget) {
 }
 
 TEST(SettingsChoice, RefusesWhatCannotBeHadAndSaysWhatCan) {
-  const SettingsChoice precise = choose(bed(), 1e-4, {});
+  const SettingsChoice precise = choose(shallow_bed(), 1e-4, {});
   ASSERT_TRUE(precise.fault);
   EXPECT_FALSE(precise.scene);
   EXPECT_EQ(precise.fault->pointer, "/numerics/target_error");
   for (const char* word : {"0.0001", "0.0025 m", "0.004", "domain.cell_size"})
     EXPECT_NE(precise.fault->detail.find(word), std::string::npos) << precise.fault->detail;
 
-  const SettingsChoice quick = choose(bed(), {}, 1e-3);
+  const SettingsChoice quick = choose(shallow_bed(), {}, 1e-3);
   ASSERT_TRUE(quick.fault);
   EXPECT_EQ(quick.fault->pointer, "/numerics/budget_seconds");
   EXPECT_NE(quick.fault->detail.find("give at least"), std::string::npos) << quick.fault->detail;
 
-  const SettingsChoice both = choose(bed(), 0.02, 1e-3);
+  const SettingsChoice both = choose(shallow_bed(), 0.02, 1e-3);
   ASSERT_TRUE(both.fault);
   EXPECT_EQ(both.fault->pointer, "/numerics/budget_seconds");
   EXPECT_NE(both.fault->detail.find("larger target_error"), std::string::npos) << both.fault->detail;
@@ -124,9 +124,9 @@ TEST(SettingsChoice, WhatTheRefusalNamesIsEnough) {
     const std::string before = "give at least ";
     return std::stod(detail.substr(detail.find(before) + before.size()));
   };
-  EXPECT_TRUE(choose(bed(), {}, named(choose(bed(), {}, 1e-3).fault->detail)).scene);
-  EXPECT_TRUE(choose(bed(), 0.02, named(choose(bed(), 0.02, 1e-3).fault->detail)).scene);
-  EXPECT_TRUE(choose(bed(), 0.004, {}).scene);
+  EXPECT_TRUE(choose(shallow_bed(), {}, named(choose(shallow_bed(), {}, 1e-3).fault->detail)).scene);
+  EXPECT_TRUE(choose(shallow_bed(), 0.02, named(choose(shallow_bed(), 0.02, 1e-3).fault->detail)).scene);
+  EXPECT_TRUE(choose(shallow_bed(), 0.004, {}).scene);
 }
 
 }  // namespace

@@ -7,14 +7,16 @@
 
 #include "engine/run/diagnosis.hpp"
 #include "engine/run/setup.hpp"
+#include "tests/engine/run/endings.hpp"
 #include "tests/engine/small_scene.hpp"
-#include "tests/verification/recorder.hpp"
 
 namespace quicksand {
 namespace {
 
 using test::add_body;
+using test::expect_clean;
 using test::plane;
+using test::says;
 
 Scene bank(double duration) {
   Scene s = plane(1, 0.8, 0.1, duration);
@@ -22,18 +24,6 @@ Scene bank(double duration) {
   s.output.frame_interval = 0.05;
   s.output.series_interval = 0.01;
   return s;
-}
-
-void expect_clean(const test::Recorder& results) {
-  for (const Frame& f : results.frames) {
-    for (double x : f.position) ASSERT_TRUE(std::isfinite(x)) << f.time;
-    for (const FrameField& field : f.fields)
-      for (float v : field.values) ASSERT_TRUE(std::isfinite(v)) << field.name << ' ' << f.time;
-  }
-}
-
-bool says(const std::string& message, const std::string& what) {
-  return message.find(what) != std::string::npos;
 }
 
 TEST(Failure, AFixedStepFarTooLargeDiverges) {

@@ -9,7 +9,7 @@
 namespace quicksand::test {
 namespace {
 
-constexpr double kHeight = 0.8, kPond = 1, kRatio = 0.3, kGamma = 9810;
+constexpr double kHeight = 0.8, kPond = 1, kRatio = 0.3, kWaterWeight = 9810;
 
 /// An elastic layer without stress or pressure, under a pond if it is saturated.
 Scene weightless_layer(BodyKind kind, double permeability, double damping) {
@@ -36,7 +36,7 @@ void expect_stress_of_weight(const Recorded& r, double weight) {
   for (std::size_t p = 0; p < last.points(); ++p) {
     if (last.phase[p] == 1) {
       const double depth = kPond - last.position[3 * p + 1];
-      EXPECT_NEAR(pressure[p], kGamma * depth, 0.005 * kGamma * kPond);
+      EXPECT_NEAR(pressure[p], kWaterWeight * depth, 0.005 * kWaterWeight * kPond);
       continue;
     }
     const double vertical = weight * (kHeight - last.position[3 * p + 1] + moved[3 * p + 1]);

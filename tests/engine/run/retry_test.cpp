@@ -2,18 +2,19 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <cstring>
 
 #include "engine/run/easing.hpp"
+#include "tests/engine/run/endings.hpp"
 #include "tests/engine/small_scene.hpp"
-#include "tests/verification/recorder.hpp"
 
 namespace quicksand {
 namespace {
 
 using test::add_body;
+using test::expect_clean;
 using test::plane;
+using test::says;
 
 /// Hits the floor at 10 m/s, nearly without stress: in the step that the soft clay allows, ln p' grows by
 /// 1 / 0.003 times the compression, beyond what a number holds.
@@ -64,17 +65,6 @@ RunOptions options(int retries, long good_every = 5) {
   chosen.retries = retries;
   chosen.good_every = good_every;
   return chosen;
-}
-
-bool says(const std::string& text, const std::string& what) { return text.find(what) != std::string::npos; }
-
-void expect_clean(const test::Recorder& results) {
-  for (const Frame& f : results.frames) {
-    for (double x : f.position) ASSERT_TRUE(std::isfinite(x)) << f.time;
-    for (const FrameField& field : f.fields)
-      for (float v : field.values) ASSERT_TRUE(std::isfinite(v)) << field.name << ' ' << f.time;
-  }
-  for (std::size_t i = 1; i < results.times.size(); ++i) ASSERT_GT(results.times[i], results.times[i - 1]);
 }
 
 void expect_same(const test::Recorder& a, const test::Recorder& b) {

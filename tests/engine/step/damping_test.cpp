@@ -12,7 +12,7 @@ namespace {
 
 using namespace test;
 
-constexpr double kClosed = 1e-12;  // of the impulse of weight; rounding
+constexpr double kMomentumClosed = 1e-12;  // of the impulse of weight; rounding
 
 TEST(Damping, SpeedsUpLessAndSlowsDownMore) {
   EXPECT_DOUBLE_EQ(damped_part(0.7, 1, 0.1), 0.3);
@@ -63,7 +63,7 @@ TEST(Damping, FallingTakesTheRestOfTheWeight) {
     const double taken = 0.6 * mass * g * 50 * dt;
     EXPECT_NEAR(l.impulse_damping[1] + l.impulse_surface[1], taken, 1e-6 * taken);
     EXPECT_NEAR(l.impulse_damping[1], taken, by_surface * taken);
-    EXPECT_LT(l.momentum_residual, kClosed);
+    EXPECT_LT(l.momentum_residual, kMomentumClosed);
     // Σ ½ m ((v + g dt)² − (v + 0.4 g dt)²) over the steps from v = 0.4 k g dt.
     double energy = 0;
     for (int k = 0; k < 50; ++k)
@@ -85,7 +85,7 @@ void expect_closed(Scene scene, int steps, double dt) {
     least = std::min(least, r.damped);
   });
   const Ledger& l = keeper.ledger();
-  EXPECT_LT(worst, kClosed);
+  EXPECT_LT(worst, kMomentumClosed);
   EXPECT_GT(l.energy_damped, 0);
   EXPECT_GT(least, -1e-3 * l.energy_damped);  // the pressure of the last step may misjudge one face
   double damping = 0;
