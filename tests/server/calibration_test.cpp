@@ -66,7 +66,7 @@ TEST_F(CalibrationFile, MissingOrDamagedIsTheUsualMachine) {
 }
 
 TEST(CalibrateOutput, MeasuresFiles) {
-  const OutputCost cost = calibrate_output(testing::TempDir(), 0.2);
+  const OutputCost cost = calibrate_output(testing::TempDir(), 0.3);
   EXPECT_GT(cost.start, 1e-3);
   EXPECT_LT(cost.start, 10);
   EXPECT_GT(cost.frame + cost.flush, 1e-5);
