@@ -99,7 +99,8 @@ QUICKSAND_INLINE const auto& nodes_along(const Kernel& kernel) {
 template <int d, int D, class Kernel>
 QUICKSAND_INLINE RowFactors<WindowRows<d, D>::count> row_weights(const Kernel& kernel) {
   RowFactors<WindowRows<d, D>::count> weight;
-  const auto &second = nodes_along<d, 1>(kernel), &third = nodes_along<d, D - 1>(kernel);
+  const auto& second = nodes_along<d, 1>(kernel);
+  const auto& third = nodes_along<d, D - 1>(kernel);
   for_rows<d, D>([&](auto r, auto y, auto z) __attribute__((always_inline)) {
     weight[r] = D == 2 ? second.w[y] : second.w[y] * third.w[z];
   });
@@ -115,6 +116,8 @@ template <int rows, class Along>
 struct Term {
   const RowFactors<rows>& factor;
   const Along& along;
+  QUICKSAND_INLINE Term(const RowFactors<rows>& by_row, const Along& by_point)
+      : factor(by_row), along(by_point) {}
 };
 template <std::size_t rows, class Along>
 Term(const std::array<Kept<>, rows>&, const Along&) -> Term<static_cast<int>(rows), Along>;

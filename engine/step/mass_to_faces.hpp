@@ -32,7 +32,8 @@ struct MassRows {
                             const std::array<BatchLanes, D>& by_arm)
       : weight(row_weights<d, D>(kernel)), pair(mass, mass * v) {
     if constexpr (S::affine) {
-      const auto &second = nodes_along<d, 1>(kernel), &third = nodes_along<d, D - 1>(kernel);
+      const auto& second = nodes_along<d, 1>(kernel);
+      const auto& third = nodes_along<d, D - 1>(kernel);
       for_rows<d, D>([&](auto r, auto y, auto z) __attribute__((always_inline)) {
         BatchLanes across = by_arm[1] * second.arm(y);
         if constexpr (D == 3) across += by_arm[2] * third.arm(z);

@@ -64,7 +64,8 @@ QUICKSAND_INLINE RowFactors<WindowRows<d, D>::count> forces_across(const Kernel&
                                                                    const SoilShare<D>& share,
                                                                    const BatchLanes& hoop) {
   RowFactors<WindowRows<d, D>::count> force;
-  const auto &second = nodes_along<d, 1>(kernel), &third = nodes_along<d, D - 1>(kernel);
+  const auto& second = nodes_along<d, 1>(kernel);
+  const auto& third = nodes_along<d, D - 1>(kernel);
   for_rows<d, D>([&](auto r, auto y, auto z) __attribute__((always_inline)) {
     BatchLanes f = second.dw[y] * share.row(d, 1);
     if constexpr (D == 3) f = f * third.w[z] + second.w[y] * third.dw[z] * share.row(d, 2);
