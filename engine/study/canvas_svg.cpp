@@ -1,4 +1,3 @@
-
 #include "engine/scene/text.hpp"
 #include "engine/study/canvas.hpp"
 
