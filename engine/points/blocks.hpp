@@ -1,8 +1,8 @@
 #pragma once
 // Cubes of cells as the unit of work, of which those near points are active: all else is empty, and nobody
-// goes there. Blocks of one colour are far enough apart that their points write to different faces, so a
-// scatter needs no atomics, and the order of every sum is fixed by the blocks alone: the result does not
-// depend on the number of threads.
+// goes there. Blocks in different tiles of one colour are far enough apart that their points write to
+// different faces, so a scatter needs no atomics, and the order of every sum is fixed by the blocks alone:
+// the result does not depend on the number of threads.
 
 #include <algorithm>
 #include <cstdint>
@@ -15,6 +15,7 @@
 
 #include "engine/grid/field.hpp"
 #include "engine/grid/grid.hpp"
+#include "engine/points/tiles.hpp"
 #include "engine/threads/parallel.hpp"
 
 namespace quicksand {
@@ -35,7 +36,7 @@ template <int D>
 class Blocks {
  public:
   static constexpr int kEdge = 4;  ///< cells; must exceed a kernel's reach of 3 faces
-  static constexpr int kColors = 1 << D;
+  static constexpr int kColors = Tiles<D>::kColors;
   static constexpr int kCells = D == 2 ? 16 : 64;  ///< of a block
 
   Blocks() = default;
@@ -47,6 +48,7 @@ class Blocks {
     }
     number_ = Field<int>(count);
     held_ = Field<std::uint8_t>(count);
+    tiles_ = Tiles<D>(blocks_);
   }
 
   /// Block that holds a cell, as its place in the domain.
@@ -178,12 +180,9 @@ class Blocks {
   /// little later on the same thread, mostly.
   template <class F, class Soon>
   void by_color(F&& f, Soon&& soon) const {
-    for (const auto& blocks : of_color_)
-      parallel(blocks.size(), [&](std::size_t i) {
-        if (i + 1 < blocks.size()) soon(blocks[i + 1]);
-        f(blocks[i]);
-      });
+    tiles_.by_color(f, soon);
   }
+  const Tiles<D>& tiles() const { return tiles_; }
   /// f(number) for all active blocks in any order.
   template <class F>
   void all(F&& f) const {
@@ -284,18 +283,10 @@ class Blocks {
     for (const int b : before) number_[b] = 0;
     return before;
   }
-  /// Numbers and colours of the active blocks.
+  /// Numbers and tiles of the active blocks.
   void number() {
-    for (auto& of_color : of_color_) of_color.clear();
-    for (int i = 0; i < count(); ++i) {
-      number_[active_[i]] = i + 1;
-      of_color_[color_of(active_[i])].push_back(i);
-    }
-  }
-  int color_of(int block) const {
-    int color = 0;
-    for (int d = 0; d < D; block /= blocks_[d], ++d) color |= (block % blocks_[d] % 2) << d;
-    return color;
+    for (int i = 0; i < count(); ++i) number_[active_[i]] = i + 1;
+    tiles_.make(active_);
   }
   /// Adds a block and those around it to the active ones, once each.
   void add_around(int block) {
@@ -321,7 +312,7 @@ class Blocks {
   std::vector<int> holding_;          ///< places of blocks that held points when blocks became active
   Field<std::uint8_t> held_;          ///< per place, kHeld if it is among them
   static constexpr std::uint8_t kHeld = 1, kHolds = 2;
-  std::array<std::vector<int>, kColors> of_color_;
+  Tiles<D> tiles_;
 };
 
 }  // namespace quicksand

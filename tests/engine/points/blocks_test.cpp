@@ -91,46 +91,70 @@ TEST(Blocks, EachFaceIsVisitedOnce) {
   expect_faces_once(Grid<2>({0, 0}, {4, 8}, 1));  // ends on a block's edge
 }
 
-/// Runs by_color on one thread and tells the blocks of each colour apart by what they may write to.
+/// Coordinates of a block.
+template <int D>
+Cell<D> place_of(const Blocks<D>& blocks, int number) {
+  Cell<D> at = blocks.cell(number, 0);
+  for (int& c : at) c /= Blocks<D>::kEdge;
+  return at;
+}
+
+/// Runs by_color on one thread and tells the tiles of each colour apart by what they may write to.
 template <int D>
 void expect_colors_apart(const Grid<D>& grid) {
   const Blocks<D> blocks = all_blocks(grid);
-  const auto color_of = [&](int b) {
-    Cell<D> first{};
-    bool known = false;
-    blocks.cells(grid, b, false, [&](int, const Cell<D>& c) {
-      if (!known) first = c, known = true;
-    });
-    int color = 0;
-    for (int d = 0; d < D; ++d) color |= (first[d] / Blocks<D>::kEdge % 2) << d;
-    return color;
-  };
-  std::array<std::map<int, int>, Blocks<D>::kColors> writer;  // target → block
+  using Tile = std::array<int, D>;
+  std::array<std::map<int, Tile>, Blocks<D>::kColors> writer;  // target → tile
   const Walls<D> open(grid);
-  for (int b = 0; b < blocks.count(); ++b)
+  std::vector<int> colors;
+  int done = 0;
+  const auto tiles = blocks.tiles();
+  const auto visit = [&](int b) {
+    ++done;
+    const int color = tiles.color_of(place_of(blocks, b));
+    if (colors.empty() || colors.back() != color) colors.push_back(color);
+    const Tile tile = tiles.tile_of(place_of(blocks, b));
     blocks.cells(grid, b, false, [&](int, const Cell<D>& c) {
       for (const double side : {0.01, 0.99}) {
         Vec<D> x;
         for (int d = 0; d < D; ++d) x[d] = grid.origin[d] + (c[d] + side) * grid.h;
         const PointKernel<D> kernel(grid, x);
         const auto note = [&](int target) {
-          const auto [at, fresh] = writer[color_of(b)].emplace(target, b);
-          EXPECT_TRUE(fresh || at->second == b);
+          const auto [at, fresh] = writer[color].emplace(target, tile);
+          EXPECT_TRUE(fresh || at->second == tile);
         };
         for (int d = 0; d < D; ++d)
           for_faces(grid, open, kernel, d, [&](int f, double, double, const Vec<D>&) { note(f); });
         for_centers(grid, open, kernel, [&](int cell, double) { note(cell); });
       }
     });
-  // by_color takes one colour after the other: a colour never comes back once left.
-  std::vector<int> order;
-  with_threads(1, [&] { blocks.by_color([&](int b) { order.push_back(color_of(b)); }, [](int) {}); });
-  EXPECT_EQ(static_cast<int>(order.size()), blocks.count());
-  EXPECT_TRUE(std::is_sorted(order.begin(), order.end()));
+  };
+  with_threads(1, [&] { blocks.by_color(visit, [](int) {}); });
+  EXPECT_EQ(done, blocks.count());
+  // One colour after the other: none comes back once left.
+  EXPECT_TRUE(std::is_sorted(colors.begin(), colors.end()));
+  EXPECT_EQ(static_cast<int>(colors.size()), Blocks<D>::kColors);
 }
 
 TEST(Blocks, ColoursShareNoFaceWithinReach2D) { expect_colors_apart(uneven_grid<2>()); }
 TEST(Blocks, ColoursShareNoFaceWithinReach3D) { expect_colors_apart(Grid<3>({0, 0, 0}, {13, 9, 9}, 1)); }
+TEST(Blocks, ColoursOfLargeTilesShareNoFaceWithinReach) {
+  const Grid<2> plane({0, 0}, {200, 120}, 1);
+  EXPECT_EQ(all_blocks(plane).tiles().edge(), (Cell<2>{8, 2}));
+  expect_colors_apart(plane);
+  const Grid<3> space({0, 0, 0}, {48, 32, 24}, 1);
+  EXPECT_EQ(all_blocks(space).tiles().edge(), (Cell<3>{4, 1, 1}));
+  expect_colors_apart(space);
+}
+
+TEST(Blocks, ATilesBlocksFollowEachOtherInRows) {
+  const Blocks<2> blocks = all_blocks(Grid<2>({0, 0}, {200, 120}, 1));
+  std::vector<int> order;
+  with_threads(1, [&] { blocks.by_color([&](int b) { order.push_back(b); }, [](int) {}); });
+  const Cell<2> edge = blocks.tiles().edge();
+  for (int k = 0; k < edge[0] * edge[1]; ++k)
+    EXPECT_EQ(place_of(blocks, order[k]), (Cell<2>{k % edge[0], k / edge[0]}));
+}
 
 TEST(Blocks, ByColorAndAllVisitEveryBlockOnce) {
   const Blocks<3> blocks = all_blocks(uneven_grid<3>());
@@ -153,7 +177,7 @@ TEST(Blocks, ByColorAndAllVisitEveryBlockOnce) {
 }
 
 TEST(Blocks, OneThatComesSoonIsSaidBeforeTheOneThatIs) {
-  const Blocks<2> blocks = all_blocks(uneven_grid<2>());
+  const Blocks<2> blocks = all_blocks(Grid<2>({0, 0}, {200, 120}, 1));
   std::vector<int> done, said;
   with_threads(1, [&] {
     blocks.by_color([&](int b) { done.push_back(b); },
@@ -162,7 +186,11 @@ TEST(Blocks, OneThatComesSoonIsSaidBeforeTheOneThatIs) {
                       EXPECT_EQ(std::count(done.begin(), done.end(), next), 0);
                     });
   });
-  EXPECT_EQ(said.size() + Blocks<2>::kColors, done.size());  // all but the first of each colour
+  const Cell<2> edge = blocks.tiles().edge();
+  EXPECT_EQ(edge, (Cell<2>{8, 2}));
+  // All but the first of each tile.
+  const int rows = 30 / edge[1], tiles = rows * ((50 + edge[0] - 1) / edge[0]);
+  EXPECT_EQ(static_cast<int>(said.size()) + tiles, static_cast<int>(done.size()));
   for (const int b : said) EXPECT_EQ(std::count(done.begin(), done.end(), b), 1);
 }
 
