@@ -176,11 +176,10 @@ class Blocks {
   /// Number of an active block, from its place; −1 if it is not active.
   int number_of(int block) const { return number_[block] - 1; }
 
-  /// f(number) for all active blocks, one colour after the other; before each, `soon` of one that comes a
-  /// little later on the same thread, mostly.
-  template <class F, class Soon>
-  void by_color(F&& f, Soon&& soon) const {
-    tiles_.by_color(f, soon);
+  /// f(number) for all active blocks, tile by tile, one colour after the other.
+  template <class F>
+  void by_color(F&& f) const {
+    tiles_.by_color(f);
   }
   const Tiles<D>& tiles() const { return tiles_; }
   /// f(number) for all active blocks in any order.

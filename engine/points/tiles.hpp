@@ -47,19 +47,13 @@ class Tiles {
     for (std::size_t i = 0; i < places.size(); ++i) order_[tiles_[tile[i]].end++] = static_cast<int>(i);
   }
 
-  /// f(number) for all blocks, by their numbers in `places`, one colour after the other; before each, `soon`
-  /// of the next one in its tile.
-  template <class F, class Soon>
-  void by_color(F&& f, Soon&& soon) const {
+  /// f(number) for all blocks, by their numbers in `places`, tile by tile, one colour after the other.
+  template <class F>
+  void by_color(F&& f) const {
     for (const auto& tiles : of_color_)
       parallel_parts(tiles.size(), 1, [&](std::size_t first, std::size_t last) {
-        for (std::size_t i = first; i < last; ++i) {
-          const Tile& tile = tiles_[tiles[i]];
-          for (int k = tile.begin; k < tile.end; ++k) {
-            if (k + 1 < tile.end) soon(order_[k + 1]);
-            f(order_[k]);
-          }
-        }
+        for (std::size_t i = first; i < last; ++i)
+          for (int k = tiles_[tiles[i]].begin; k < tiles_[tiles[i]].end; ++k) f(order_[k]);
       });
   }
   /// Blocks along the edges of a tile.

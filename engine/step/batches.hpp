@@ -127,18 +127,6 @@ void for_batches(const Blocks<D>& blocks, const BlockList& list, int b, F&& f) {
   for (PointBatch<D> batch; walk.next(batch);) f(batch);
 }
 
-/// Asks the memory for what points of block b hold in these arrays. Blocks of one colour do not lie one after
-/// the other, so that processors do not foresee it.
-template <int D, class... Arrays>
-void fetch_soon(const Blocks<D>& blocks, const BlockList& list, int b, const Arrays&... arrays) {
-  const PointRange points = blocks.points(list, b);
-  const auto fetch = [&](const auto& array) {
-    constexpr std::uint32_t line = 64, some = std::max<std::uint32_t>(1, line / sizeof(array[0]));
-    for (std::uint32_t k = points.begin; k < points.end; k += some) __builtin_prefetch(&array[list.order[k]]);
-  };
-  (fetch(arrays), ...);
-}
-
 /// The windows of a batch's cells: the same twice if it is one.
 template <int D>
 struct BatchWindows {

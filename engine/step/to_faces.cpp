@@ -26,18 +26,12 @@ void points_to_faces(State<D>& s) {
   });
   with_scheme(s, [&](auto scheme) {
     using S = decltype(scheme);
-    s.blocks.by_color(
-        [&](int b) {
-          for_batches(s.blocks, s.soil_blocks, b,
-                      [&](const PointBatch<D>& batch) { soil_to_faces<S, D>(s, batch); });
-          for_batches(s.blocks, s.water_blocks, b,
-                      [&](const PointBatch<D>& batch) { water_to_faces<S, D>(s, batch); });
-        },
-        [&](int next) {
-          fetch_soon(s.blocks, s.soil_blocks, next, s.soil.x, s.soil.v, s.soil.mass, s.soil.porosity,
-                     s.soil.stress);
-          fetch_soon(s.blocks, s.water_blocks, next, s.water.x, s.water.v, s.water.mass);
-        });
+    s.blocks.by_color([&](int b) {
+      for_batches(s.blocks, s.soil_blocks, b,
+                  [&](const PointBatch<D>& batch) { soil_to_faces<S, D>(s, batch); });
+      for_batches(s.blocks, s.water_blocks, b,
+                  [&](const PointBatch<D>& batch) { water_to_faces<S, D>(s, batch); });
+    });
   });
   loads_to_faces(s);
   fold_plates(s);

@@ -129,7 +129,7 @@ void expect_colors_apart(const Grid<D>& grid) {
       }
     });
   };
-  with_threads(1, [&] { blocks.by_color(visit, [](int) {}); });
+  with_threads(1, [&] { blocks.by_color(visit); });
   EXPECT_EQ(done, blocks.count());
   // One colour after the other: none comes back once left.
   EXPECT_TRUE(std::is_sorted(colors.begin(), colors.end()));
@@ -150,7 +150,7 @@ TEST(Blocks, ColoursOfLargeTilesShareNoFaceWithinReach) {
 TEST(Blocks, ATilesBlocksFollowEachOtherInRows) {
   const Blocks<2> blocks = all_blocks(Grid<2>({0, 0}, {200, 120}, 1));
   std::vector<int> order;
-  with_threads(1, [&] { blocks.by_color([&](int b) { order.push_back(b); }, [](int) {}); });
+  with_threads(1, [&] { blocks.by_color([&](int b) { order.push_back(b); }); });
   const Cell<2> edge = blocks.tiles().edge();
   for (int k = 0; k < edge[0] * edge[1]; ++k)
     EXPECT_EQ(place_of(blocks, order[k]), (Cell<2>{k % edge[0], k / edge[0]}));
@@ -160,12 +160,10 @@ TEST(Blocks, ByColorAndAllVisitEveryBlockOnce) {
   const Blocks<3> blocks = all_blocks(uneven_grid<3>());
   std::mutex mutex;
   std::multiset<int> colored, all;
-  blocks.by_color(
-      [&](int b) {
-        const std::lock_guard lock(mutex);
-        colored.insert(b);
-      },
-      [](int) {});
+  blocks.by_color([&](int b) {
+    const std::lock_guard lock(mutex);
+    colored.insert(b);
+  });
   blocks.all([&](int b) {
     const std::lock_guard lock(mutex);
     all.insert(b);
@@ -174,24 +172,6 @@ TEST(Blocks, ByColorAndAllVisitEveryBlockOnce) {
   for (int b = 0; b < blocks.count(); ++b) expected.insert(b);
   EXPECT_EQ(colored, expected);
   EXPECT_EQ(all, expected);
-}
-
-TEST(Blocks, OneThatComesSoonIsSaidBeforeTheOneThatIs) {
-  const Blocks<2> blocks = all_blocks(Grid<2>({0, 0}, {200, 120}, 1));
-  std::vector<int> done, said;
-  with_threads(1, [&] {
-    blocks.by_color([&](int b) { done.push_back(b); },
-                    [&](int next) {
-                      said.push_back(next);
-                      EXPECT_EQ(std::count(done.begin(), done.end(), next), 0);
-                    });
-  });
-  const Cell<2> edge = blocks.tiles().edge();
-  EXPECT_EQ(edge, (Cell<2>{8, 2}));
-  // All but the first of each tile.
-  const int rows = 30 / edge[1], tiles = rows * ((50 + edge[0] - 1) / edge[0]);
-  EXPECT_EQ(static_cast<int>(said.size()) + tiles, static_cast<int>(done.size()));
-  for (const int b : said) EXPECT_EQ(std::count(done.begin(), done.end(), b), 1);
 }
 
 TEST(Blocks, SumIsTakenInTheOrderOfTheBlocks) {
