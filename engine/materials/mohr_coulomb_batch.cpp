@@ -15,10 +15,7 @@ int MohrCoulombLaw::update_batch(SoilState<D, BatchLanes>& state, const Strain<D
   if (!any_of(yields, count)) return 0;
 
   const PrincipalLanes<D> principal(state.stress);
-  const auto& [a, b, z] = principal.value;
-  const BatchLanes low = where(a < b, a, b), high = where(a < b, b, a);
-  const BatchLanes s1 = where(z > high, z, high), s3 = where(z < low, z, low);
-  const BatchLanes s2 = clamped<BatchLanes>(z, low, high);
+  const auto& [s1, s2, s3] = principal.value;
   const BatchLanes gamma =
       face.compliance * (s1 * (1 + peak.sin_phi) - s3 * (1 - peak.sin_phi) - 2 * peak.cos_phi * c);
   BatchLanes r1 = s1 - gamma * face.drop[0], r2 = s2 - gamma * face.drop[1], r3 = s3 - gamma * face.drop[2];
@@ -42,13 +39,7 @@ int MohrCoulombLaw::update_batch(SoilState<D, BatchLanes>& state, const Strain<D
     r1 = k1.lanes(), r2 = k2.lanes(), r3 = k3.lanes(), state.plastic_strain = strained.lanes();
     returned = returned | (done.lanes() > 0);
   }
-  // Where two values are one, so are those that they return to.
-  std::array<BatchLanes, 3> values;
-  for (int i = 0; i < 3; ++i) {
-    const BatchLanes& v = principal.value[i];
-    values[i] = where(v >= s1, r1, where(v <= s3, r3, r2));
-  }
-  const Stress<D, BatchLanes> stress = principal.with(values);
+  const Stress<D, BatchLanes> stress = principal.with({r1, r2, r3});
   for (std::size_t i = 0; i < stress.size(); ++i)
     state.stress[i] = where(returned, stress[i], state.stress[i]);
   return 0;

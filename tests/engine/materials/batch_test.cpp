@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Eigenvalues>
+#include <limits>
 #include <random>
 
 #include "engine/materials/principal_lanes.hpp"
@@ -89,26 +91,66 @@ TEST(Batch, LanesEndWherePointsAloneDo) {
     }
 }
 
+/// Tensors of all sizes, some with zeros, with two values that are nearly or fully one, or with all three.
+Stress<3, BatchLanes> some_tensors(int trial) {
+  Stress<3, BatchLanes> s;
+  for (auto& component : s)
+    for (int k = 0; k < kBatch; ++k)
+      set_lane(component, k, trial % 5 == 4 && any(1) > 0 ? 0 : any(1) * std::pow(10, any(6)));
+  if (trial % 7 == 0)  // squares of nothing
+    for (auto& component : s) component *= 1e-170;
+  if (trial % 3 == 0) s[1] = s[0];
+  if (trial % 11 == 0) s[3] = s[4] = s[5] = std::pow(10, -trial % 17) * s[3];
+  if (trial % 13 == 0) s[1] = s[2] = s[0];
+  return s;
+}
+double size_of(const Stress<3>& s) {
+  double size = std::numeric_limits<double>::min();
+  for (const double c : s) size = std::max(size, std::abs(c));
+  return size;
+}
+Stress<3> lane_of_tensors(const Stress<3, BatchLanes>& s, int k) {
+  Stress<3> one;
+  for (int i = 0; i < 6; ++i) one[i] = s[i][k];
+  return one;
+}
+
 TEST(PrincipalLanes, MakeTheTensorAgain) {
   for (int trial = 0; trial < 500; ++trial) {
-    Stress<3, BatchLanes> s;
-    for (auto& component : s)
-      for (int k = 0; k < kBatch; ++k)
-        set_lane(component, k, trial % 5 == 4 && any(1) > 0 ? 0 : any(1) * std::pow(10, any(6)));
-    if (trial % 7 == 0)  // squares of nothing
-      for (auto& component : s) component *= 1e-170;
-    if (trial % 3 == 0) s[1] = s[0];
+    const Stress<3, BatchLanes> s = some_tensors(trial);
     const PrincipalLanes<3> p(s);
     const auto again = p.with(p.value);
     for (int k = 0; k < kBatch; ++k) {
-      double size = 0;
-      Stress<3> one;
-      for (int i = 0; i < 6; ++i) one[i] = s[i][k], size = std::max(size, std::abs(one[i]));
-      std::array<double, 3> values{p.value[0][k], p.value[1][k], p.value[2][k]};
-      std::sort(values.begin(), values.end(), std::greater<>());
+      const Stress<3> one = lane_of_tensors(s, k);
+      const double size = size_of(one);
       const auto exact = principal(one).value;
-      for (int i = 0; i < 3; ++i) EXPECT_NEAR(values[i], exact[i], 1e-10 * size);
-      for (int i = 0; i < 6; ++i) EXPECT_NEAR(again[i][k], one[i], 1e-14 * size);
+      for (int i = 0; i < 3; ++i) EXPECT_NEAR(p.value[i][k], exact[i], 1e-10 * size);
+      for (int i = 0; i < 6; ++i) EXPECT_NEAR(again[i][k], one[i], 2e-14 * size);
+    }
+  }
+}
+
+// As a return onto a yield surface changes them: values come closer to each other, and all of them move.
+TEST(PrincipalLanes, TakeOtherValuesInTheSameDirections) {
+  for (int trial = 0; trial < 2000; ++trial) {
+    const Stress<3, BatchLanes> s = some_tensors(trial);
+    const PrincipalLanes<3> p(s);
+    const auto& [s1, s2, s3] = p.value;
+    const double upper = trial % 4 == 0 ? 0 : std::abs(any(1)), lower = trial % 6 == 0 ? 0 : std::abs(any(1));
+    const BatchLanes middle = any(1) * s2 + any(1) * s1;
+    const auto returned = p.with({middle + upper * (s1 - s2), middle, middle - lower * (s2 - s3)});
+    for (int k = 0; k < kBatch; ++k) {
+      const Stress<3> one = lane_of_tensors(s, k);
+      Eigen::Matrix3d tensor;
+      tensor << one[0], one[3], one[5], one[3], one[1], one[4], one[5], one[4], one[2];
+      const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> exact(tensor / size_of(one));  // ascending
+      const Eigen::Vector3d value = size_of(one) * exact.eigenvalues();
+      const double m = middle[k];
+      const Eigen::Vector3d other(m - lower * (value[1] - value[0]), m, m + upper * (value[2] - value[1]));
+      const Eigen::Matrix3d& axes = exact.eigenvectors();
+      const Eigen::Matrix3d all = axes * other.asDiagonal() * axes.transpose();
+      const Stress<3> expected{all(0, 0), all(1, 1), all(2, 2), all(0, 1), all(1, 2), all(2, 0)};
+      for (int i = 0; i < 6; ++i) ASSERT_NEAR(returned[i][k], expected[i], 2e-13 * size_of(one)) << trial;
     }
   }
 }
