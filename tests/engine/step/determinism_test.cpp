@@ -60,5 +60,21 @@ TEST(Determinism, AnyNumberOfThreadsGivesTheSameBitsInSpace) {
   for (const int threads : {2, 3, 8}) expect_same(one, advanced<3>(s, threads, 30, 2e-4));
 }
 
+/// Enough blocks that several of them make a tile.
+TEST(Determinism, LargeTilesGiveTheSameBits) {
+  const tbb::global_control more(tbb::global_control::max_allowed_parallelism, 8);
+  const Scene fine = collapse(0.01);
+  const State<2> one = advanced<2>(fine, 1, 12, 1e-4);
+  EXPECT_EQ(one.blocks.tiles().edge(), (Cell<2>{4, 1}));
+  for (const int threads : {2, 3, 8}) expect_same(one, advanced<2>(fine, threads, 12, 1e-4));
+
+  Scene s = space({1.6, 1.2, 1.2}, 0.05);
+  add_body(s, "bank", BodyKind::saturated_soil, {0, 0, 0}, {0.5, 1.1, 1.2});
+  add_body(s, "pool", BodyKind::water, {0.5, 0, 0}, {1.5, 1, 1.2});
+  const State<3> deep = advanced<3>(s, 1, 3, 1e-4);
+  EXPECT_EQ(deep.blocks.tiles().edge(), (Cell<3>{2, 1, 1}));
+  for (const int threads : {2, 8}) expect_same(deep, advanced<3>(s, threads, 3, 1e-4));
+}
+
 }  // namespace
 }  // namespace quicksand
