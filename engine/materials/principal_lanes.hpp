@@ -43,7 +43,8 @@ class PrincipalLanes<2> {
   }
 
  private:
-  BatchLanes cos2_, sin2_, larger_, smaller_, z_;  ///< the larger and the smaller one in the plane
+  BatchLanes cos2_, sin2_;           ///< of twice the angle of the larger one in the plane from x
+  BatchLanes larger_, smaller_, z_;  ///< in the plane, and across it
 };
 
 /// By Jacobi's rotations, until no lane has anything off the diagonal that counts, which is after the fourth

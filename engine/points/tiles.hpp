@@ -78,7 +78,7 @@ class Tiles {
 
   /// Rows first, as neighbours along x lie next to each other in memory.
   static Cell<D> edge_for(std::size_t blocks) {
-    constexpr std::size_t tiles = 14 * kColors;
+    constexpr std::size_t tiles = 14 * kColors;  // fewer leave threads waiting, more write faces more often
     Cell<D> edge;
     edge.fill(1);
     std::size_t share = blocks / tiles;

@@ -108,7 +108,7 @@ void expect_colors_apart(const Grid<D>& grid) {
   const Walls<D> open(grid);
   std::vector<int> colors;
   int done = 0;
-  const auto tiles = blocks.tiles();
+  const Tiles<D>& tiles = blocks.tiles();
   const auto visit = [&](int b) {
     ++done;
     const int color = tiles.color_of(place_of(blocks, b));
