@@ -142,8 +142,12 @@ QUICKSAND_INLINE RowSums<rows> sum_points(int from, int to, const Term<rows, Alo
   return sums;
 }
 
-/// Adds the sums of a window of component d to the faces. Folded at walls, `mirrored(face, mass)` is told
-/// the first numbers of pairs whose second ones change their sign.
+/// Whether the second of a pair is the component of a vector, which changes its sign in a mirror.
+template <class Pair>
+inline constexpr bool kLastIsOfVector = true;
+
+/// Adds the sums of a window of component d to the faces. Where a wall folds them into its mirror and vectors
+/// change their sign, `mirrored(face, mass)` is told the first number.
 template <int d, int D, class Pair, class F>
 QUICKSAND_INLINE void add_to_faces(const Grid<D>& grid, const CellWindow<D>& window,
                                    const RowSums<WindowRows<d, D>::count>& sums, Field<Pair>& to,
@@ -162,7 +166,7 @@ QUICKSAND_INLINE void add_to_faces(const Grid<D>& grid, const CellWindow<D>& win
   window.faces(d, [&](int node, int face, double sign) {
     const double* pair = &of[Rows::place(node)];
     double* at = &reinterpret_cast<double&>(to[face]);
-    at[0] += pair[0], at[1] += sign * pair[1];
+    at[0] += pair[0], at[1] += kLastIsOfVector<Pair> ? sign * pair[1] : pair[1];
     if (sign < 0) mirrored(face, pair[0]);
   });
 }

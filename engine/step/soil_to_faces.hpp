@@ -5,6 +5,9 @@
 
 namespace quicksand {
 
+template <>
+inline constexpr bool kLastIsOfVector<RoomSum> = false;
+
 /// m/s, for drag that follows it.
 template <int D>
 double discharge_of(const SoilPoints<D>& soil, std::size_t p) {

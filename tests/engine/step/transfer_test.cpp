@@ -65,7 +65,10 @@ void expect_rows_agree(Scene scene) {
     for (int d = 0; d < D; ++d)
       for_faces(s.grid, s.soil_walls, kernel, d, [&](int face, double w, double sign, const Vec<D>& g) {
         sums[d][face].soil_mass += w * s.soil.mass[p];
-        sums[d][face].grains += w * grains;
+        if (s.has_water) {
+          sums[d][face].grains += w * grains, sums[d][face].soil_bulk += w * bulk;
+          sums[d][face].resistivity += w * bulk * s.constants.soils[0].drag.resistivity(s.soil.porosity[p]);
+        }
         sums[d][face].soil_momentum += sign * w * s.soil.mass[p] * s.soil.v[p][d];
         for (int j = 0; j < D; ++j) {
           const int shear = D == 2 ? 3 : d + j == 1 ? 3 : d + j == 3 ? 4 : 5;
@@ -86,6 +89,8 @@ void expect_rows_agree(Scene scene) {
       const FaceSums &a = s.sums[d][i], &b = sums[d][i];
       EXPECT_NEAR(a.soil_mass, b.soil_mass, 1e-12);
       EXPECT_NEAR(a.grains, b.grains, 1e-15);
+      EXPECT_NEAR(a.soil_bulk, b.soil_bulk, 1e-15);
+      EXPECT_NEAR(a.resistivity, b.resistivity, 1e-12 * (1 + b.resistivity));
       EXPECT_NEAR(a.soil_momentum, b.soil_momentum, 1e-12);
       EXPECT_NEAR(a.soil_force, b.soil_force, 1e-10);
       EXPECT_NEAR(a.water_mass, b.water_mass, 1e-12);
@@ -94,12 +99,15 @@ void expect_rows_agree(Scene scene) {
 }
 
 TEST(Transfer, RowsInLanesAreNodesInScalars) {
-  Scene plane_scene = plane(1, 1, 0.1);
-  add_body(plane_scene, "bed", BodyKind::saturated_soil, {0, 0, 0}, {0.7, 0.6, 0});
-  expect_rows_agree<2>(plane_scene);
-  Scene space_scene = space({0.8, 0.8, 0.8}, 0.1);
-  add_body(space_scene, "bed", BodyKind::saturated_soil, {0, 0, 0}, {0.7, 0.6, 0.8});
-  expect_rows_agree<3>(space_scene);
+  for (const BodyKind kind : {BodyKind::saturated_soil, BodyKind::soil, BodyKind::water}) {
+    SCOPED_TRACE(static_cast<int>(kind));
+    Scene plane_scene = plane(1, 1, 0.1);
+    add_body(plane_scene, "bed", kind, {0, 0, 0}, {0.7, 0.6, 0});
+    expect_rows_agree<2>(plane_scene);
+    Scene space_scene = space({0.8, 0.8, 0.8}, 0.1);
+    add_body(space_scene, "bed", kind, {0, 0, 0}, {0.7, 0.6, 0.8});
+    expect_rows_agree<3>(space_scene);
+  }
 }
 
 /// Points spin about `center` at `rate` rad/s, the velocity's gradient with them.
