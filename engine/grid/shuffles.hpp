@@ -177,4 +177,22 @@ QUICKSAND_INLINE std::array<BatchLanes, n> columns(const double* first, int coun
   return column;
 }
 
+/// The other way, for all lanes: first[n k + i] = v[i][k].
+template <int n>
+QUICKSAND_INLINE void put_columns(const std::array<BatchLanes, n>& v, double* first) {
+  static_assert(n == 2 || n == 4);
+  if constexpr (n == 2) {
+    const auto pairs = interleaved<kBatch>(v[0], v[1]);
+    put_lanes<kBatch>(first[0], pairs[0]), put_lanes<kBatch>(first[kBatch], pairs[1]);
+  } else {
+    const auto put = [&](const std::array<Lanes<4>, 4>& rows, int k) __attribute__((always_inline)) {
+      const auto entries = transposed<4>(rows);
+      each<4>([&](auto i) __attribute__((always_inline)) { put_lanes<4>(first[4 * (k + i)], entries[i]); });
+    };
+    put({low_half<kBatch>(v[0]), low_half<kBatch>(v[1]), low_half<kBatch>(v[2]), low_half<kBatch>(v[3])}, 0);
+    put({high_half<kBatch>(v[0]), high_half<kBatch>(v[1]), high_half<kBatch>(v[2]), high_half<kBatch>(v[3])},
+        4);
+  }
+}
+
 }  // namespace quicksand

@@ -1,7 +1,6 @@
 #pragma once
 // What points leave on the windows of their cells, row by row along x: on four faces of a row, or three
-// centres, a pair of numbers each, which is one vector of eight. Node by node the same is in
-// grid/stencil.hpp.
+// centres, m numbers each. Pairs are one vector of eight. Node by node the same is in grid/stencil.hpp.
 
 #include <algorithm>
 #include <cstddef>
@@ -16,13 +15,13 @@ namespace quicksand {
 template <int d, int D>
 struct WindowRows {
   static constexpr int across = d == 1 ? 4 : 3, deep = D == 2 ? 1 : d == 2 ? 4 : 3, count = across * deep;
-  /// For node k in the order of Walls::CellFolds: where its pair lies among those of all rows.
+  /// For node k in the order of Walls::CellFolds: which one it is of all rows.
   static constexpr int place(int k) {
     std::array<int, 3> at{};
     at[axis_of(d, 0)] = k % 4;
     at[axis_of(d, 1)] = k / 4 % 3;
     if (D == 3) at[axis_of(d, 2)] = k / 12;
-    return 8 * (at[1] + across * at[2]) + 2 * at[0];
+    return 4 * (at[1] + across * at[2]) + at[0];
   }
 };
 
@@ -37,17 +36,34 @@ struct alignas(64) PairsByPoint {
   QUICKSAND_INLINE Lanes<8> operator[](int k) const { return four_times(&at[2 * k]); }
 };
 
-/// Numbers of the nodes along x, each twice, point by point.
+/// Numbers of up to four nodes along x, point by point: m of each node.
+template <int m>
 struct NodesByPoint {
-  std::array<Kept<8>, kBatch> of;
-  QUICKSAND_INLINE explicit NodesByPoint(const std::array<BatchLanes, 4>& w) {
-    const auto rows = transposed<8>({w[0], w[0], w[1], w[1], w[2], w[2], w[3], w[3]});
-    each<kBatch>([&](auto k) __attribute__((always_inline)) { of[k] = rows[k]; });
-  }
-  QUICKSAND_INLINE explicit NodesByPoint(const std::array<BatchLanes, 3>& w)
-      : NodesByPoint({w[0], w[1], w[2], BatchLanes{}}) {}
-  QUICKSAND_INLINE Lanes<8> operator[](int k) const { return of[k].lanes(); }
+  std::array<Kept<4 * m>, kBatch> of;
+  QUICKSAND_INLINE Lanes<4 * m> operator[](int k) const { return of[k].lanes(); }
 };
+/// Pairs of a and b.
+template <std::size_t n>
+QUICKSAND_INLINE NodesByPoint<2> by_point(const std::array<BatchLanes, n>& a,
+                                          const std::array<BatchLanes, n>& b) {
+  NodesByPoint<2> nodes;
+  std::array<BatchLanes, 8> rows{};
+  each<n>([&](auto i) __attribute__((always_inline)) { rows[2 * i] = a[i], rows[2 * i + 1] = b[i]; });
+  rows = transposed<8>(rows);
+  each<kBatch>([&](auto k) __attribute__((always_inline)) { nodes.of[k] = rows[k]; });
+  return nodes;
+}
+template <std::size_t n>
+QUICKSAND_INLINE NodesByPoint<1> by_point(const std::array<BatchLanes, n>& a) {
+  NodesByPoint<1> nodes;
+  std::array<Lanes<4>, 4> low{}, high{};
+  each<n>([&](auto i) __attribute__((always_inline)) {
+    low[i] = low_half<kBatch>(a[i]), high[i] = high_half<kBatch>(a[i]);
+  });
+  low = transposed<4>(low), high = transposed<4>(high);
+  each<4>([&](auto k) __attribute__((always_inline)) { nodes.of[k] = low[k], nodes.of[k + 4] = high[k]; });
+  return nodes;
+}
 
 /// x for the second number of each pair, else 0.
 QUICKSAND_INLINE Lanes<8> second_of_pairs(double x) {
@@ -107,11 +123,11 @@ QUICKSAND_INLINE RowFactors<WindowRows<d, D>::count> row_weights(const Kernel& k
   return weight;
 }
 
-/// Pairs on the nodes of a window.
-template <int rows>
-using RowSums = std::array<Lanes<8>, rows>;
+/// m numbers on each node of a window.
+template <int rows, int m = 2>
+using RowSums = std::array<Lanes<4 * m>, rows>;
 
-/// What a kind of pair goes with: a factor by rows, and along(k) for point k.
+/// What such numbers go with: a factor by rows, and along(k) for point k, numbers of four nodes.
 template <int rows, class Along>
 struct Term {
   const RowFactors<rows>& factor;
@@ -122,17 +138,17 @@ struct Term {
 template <std::size_t rows, class Along>
 Term(const std::array<Kept<>, rows>&, const Along&) -> Term<static_cast<int>(rows), Along>;
 
-/// Σ of along(k) × factor[row][k] over the points `from` to `to` and all terms. So many rows at once as
-/// registers hold.
-template <int rows, class... Along>
-QUICKSAND_INLINE RowSums<rows> sum_points(int from, int to, const Term<rows, Along>&... terms) {
-  RowSums<rows> sums;
-  constexpr int some = kRegister == 8 || rows < 6 ? rows : 6;
+/// Σ of along(k) × factor[row][k] over the points `from` to `to` and all terms, m numbers on each node. So
+/// many rows at once as registers hold.
+template <int m, int rows, class... Along>
+QUICKSAND_INLINE RowSums<rows, m> sum_points(int from, int to, const Term<rows, Along>&... terms) {
+  RowSums<rows, m> sums;
+  constexpr int some = kRegister == 8 ? rows : std::min(rows, 12 / m);
   each<(rows + some - 1) / some>([&](auto part) __attribute__((always_inline)) {
     constexpr int first = part * some, count = std::min(some, rows - first);
-    std::array<Lanes<8>, count> sum{};
+    std::array<Lanes<4 * m>, count> sum{};
     const auto add = [&](int k, const auto& term) __attribute__((always_inline)) {
-      const Lanes<8> along = term.along(k);
+      const Lanes<4 * m> along = term.along(k);
       each<count>([&](auto r)
                       __attribute__((always_inline)) { sum[r] += term.factor[first + r][k] * along; });
     };
@@ -142,44 +158,47 @@ QUICKSAND_INLINE RowSums<rows> sum_points(int from, int to, const Term<rows, Alo
   return sums;
 }
 
-/// Whether the second of a pair is the component of a vector, which changes its sign in a mirror.
-template <class Pair>
+/// Whether the last of a node's numbers is the component of a vector, which changes its sign in a mirror.
+template <class Numbers>
 inline constexpr bool kLastIsOfVector = true;
 
 /// Adds the sums of a window of component d to the faces. Where a wall folds them into its mirror and vectors
-/// change their sign, `mirrored(face, mass)` is told the first number.
-template <int d, int D, class Pair, class F>
-QUICKSAND_INLINE void add_to_faces(const Grid<D>& grid, const CellWindow<D>& window,
-                                   const RowSums<WindowRows<d, D>::count>& sums, Field<Pair>& to,
-                                   const F& mirrored) {
-  static_assert(sizeof(Pair) == 2 * sizeof(double));
+/// change their sign, `mirrored(face, first)` is told the first number.
+template <int d, int D, class Numbers, class F>
+QUICKSAND_INLINE void add_to_faces(
+    const Grid<D>& grid, const CellWindow<D>& window,
+    const RowSums<WindowRows<d, D>::count, sizeof(Numbers) / sizeof(double)>& sums, Field<Numbers>& to,
+    const F& mirrored) {
+  constexpr int m = sizeof(Numbers) / sizeof(double), row = 4 * m;
   using Rows = WindowRows<d, D>;
   if (window.open()) {
     const auto first = first_of_rows<d>(grid, window, to.data());
-    each<Rows::count>([&](auto row) __attribute__((always_inline)) {
-      add_lanes<8>(reinterpret_cast<double&>(*first[row]), sums[row]);
+    each<Rows::count>([&](auto r) __attribute__((always_inline)) {
+      add_lanes<row>(reinterpret_cast<double&>(*first[r]), sums[r]);
     });
     return;
   }
-  alignas(64) std::array<double, 8 * Rows::count> of;
-  each<Rows::count>([&](auto r) __attribute__((always_inline)) { put_lanes<8>(of[8 * r], sums[r]); });
+  alignas(64) std::array<double, row * Rows::count> of;
+  each<Rows::count>([&](auto r) __attribute__((always_inline)) { put_lanes<row>(of[row * r], sums[r]); });
   window.faces(d, [&](int node, int face, double sign) {
-    const double* pair = &of[Rows::place(node)];
+    const double* numbers = &of[m * Rows::place(node)];
     double* at = &reinterpret_cast<double&>(to[face]);
-    at[0] += pair[0], at[1] += kLastIsOfVector<Pair> ? sign * pair[1] : pair[1];
-    if (sign < 0) mirrored(face, pair[0]);
+    if (m == 2) at[0] += numbers[0];
+    at[m - 1] += kLastIsOfVector<Numbers> ? sign * numbers[m - 1] : numbers[m - 1];
+    if (sign < 0) mirrored(face, numbers[0]);
   });
 }
 
-/// f(cell, pair) for the centres of a window, whose rows are those of component 0.
-template <int D, class F>
+/// f(cell, numbers) for the centres of a window, whose rows are those of component 0.
+template <int m, int D, class F>
 QUICKSAND_INLINE void for_centers_of(const CellWindow<D>& window,
-                                     const RowSums<WindowRows<0, D>::count>& sums, const F& f) {
-  alignas(64) std::array<double, 8 * WindowRows<0, D>::count> of;
+                                     const RowSums<WindowRows<0, D>::count, m>& sums, const F& f) {
+  constexpr int row = 4 * m;
+  alignas(64) std::array<double, row * WindowRows<0, D>::count> of;
   each<WindowRows<0, D>::count>([&](auto r)
-                                    __attribute__((always_inline)) { put_lanes<8>(of[8 * r], sums[r]); });
+                                    __attribute__((always_inline)) { put_lanes<row>(of[row * r], sums[r]); });
   window.centers([&](int node, int cell)
-                     __attribute__((always_inline)) { f(cell, &of[8 * (node / 3) + 2 * (node % 3)]); });
+                     __attribute__((always_inline)) { f(cell, &of[row * (node / 3) + m * (node % 3)]); });
 }
 
 }  // namespace quicksand

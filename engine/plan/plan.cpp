@@ -166,8 +166,8 @@ Memory measure(const Scene& scene, Plan& plan) {
   const double rest = keeps_rest(scene, points.fixed > 0) ? sizeof(FaceRest) : 0;
   const bool soil = points.soil + points.fixed > 0;
   const double flow = keeps_flow(scene, plan.has_water) ? sizeof(FaceFlow) : 0;
-  const double of_soil = sizeof(MassSum) + sizeof(ForceSum), of_water = sizeof(MassSum),
-               of_both = sizeof(RoomSum);
+  const double of_soil = sizeof(MassSum) + (plan.has_water ? 0 : sizeof(double)), of_water = sizeof(MassSum),
+               of_both = sizeof(ForceSum) + sizeof(RoomSum);
   const double sums =
       (soil ? of_soil : 0) + (plan.has_water ? of_water : 0) + (soil && plan.has_water ? of_both : 0);
   const double flux = plan.has_water ? 2 * sizeof(double) : 0;

@@ -159,9 +159,10 @@ class Blocks {
     const auto first = static_cast<std::size_t>(number) * kCells;
     return {list.begin[first], list.begin[first + kCells]};
   }
-  /// Cell k of an active block, in the order of BlockList::begin.
-  Cell<D> cell(int number, int k) const {
-    Cell<D> c = low_cell(active_[number]);
+  /// The lowest cell of an active block.
+  Cell<D> low(int number) const { return low_cell(active_[number]); }
+  /// Cell k of the block whose lowest cell is c, in the order of BlockList::begin.
+  static Cell<D> cell(Cell<D> c, int k) {
     for (int d = D - 1; d >= 0; k /= kEdge, --d) c[kOrder[d]] += k % kEdge;
     return c;
   }

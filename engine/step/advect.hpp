@@ -42,12 +42,12 @@ class VelocityWindow {
  private:
   QUICKSAND_INLINE const double* row(auto x, auto y, auto z) const {
     constexpr int place = Rows::place(x + 4 * (y + 3 * z));
-    return row_[place / 8] + place % 8 * 2;
+    return row_[place / 4] + place % 4 * 4;
   }
   void gather(const State<D>& s, const CellWindow<D>& window) {
     window.faces(d, [&](int node, int face, double sign) {
       const double* of = &s.speeds[d][face].soil_old;
-      double* to = &gathered_[2 * Rows::place(node)];
+      double* to = &gathered_[4 * Rows::place(node)];
       to[members.old] = sign * of[members.old];
       to[members.now] = sign * of[members.now];
     });

@@ -1,6 +1,8 @@
 #pragma once
 // Loops over the points of a block, cell by cell, some at a time with their weights.
 
+#include <algorithm>
+
 #include "engine/grid/cell_kernel.hpp"
 #include "engine/grid/shuffles.hpp"
 #include "engine/points/blocks.hpp"
@@ -20,7 +22,10 @@ struct PointBatch {
   bool in_a_row = false;  ///< one after the other in memory
 
   void fill(const std::uint32_t* from) {
-    for (int k = 0; k < kBatch; ++k) point[k] = from[k < count ? k : 0];
+    if (count == kBatch)
+      std::copy_n(from, kBatch, point.begin());
+    else
+      for (int k = 0; k < kBatch; ++k) point[k] = from[k < count ? k : 0];
     // Those of each cell ascend.
     const int last = end[0] - 1;
     in_a_row = from[last] - from[0] == static_cast<std::uint32_t>(last);
@@ -41,6 +46,8 @@ struct PointBatch {
     each<D>([&](auto d) __attribute__((always_inline)) { at[d] = by_cell(cell[0][d], cell[1][d]); });
     return at;
   }
+  /// Whether the lanes are points that lie one after the other, all of them.
+  bool full() const { return in_a_row && count == kBatch; }
   /// v in the lanes of these points, else 0.
   QUICKSAND_INLINE BatchLanes only(const BatchLanes& v) const {
     return where(lane_numbers() < count, v, BatchLanes{});
@@ -51,6 +58,7 @@ struct PointBatch {
     return lanes_of<kBatch>([&](int k) { return from[point[k]]; });
   }
   QUICKSAND_INLINE void put(const BatchLanes& v, std::vector<double>& to) const {
+    if (full()) return put_lanes<kBatch>(to[point[0]], v);
     const Kept<> kept = v;
     for (int k = 0; k < count; ++k) to[point[k]] = kept[k];
   }
@@ -67,6 +75,8 @@ struct PointBatch {
   template <std::size_t n>
   QUICKSAND_INLINE void put(const std::array<BatchLanes, n>& v,
                             std::vector<std::array<double, n>>& to) const {
+    if constexpr (n == 2 || n == 4)
+      if (full()) return put_columns<static_cast<int>(n)>(v, to[point[0]].data());
     std::array<Kept<>, n> kept;
     each<static_cast<int>(n)>([&](auto i) __attribute__((always_inline)) { kept[i] = v[i]; });
     for (int k = 0; k < count; ++k)
@@ -80,10 +90,7 @@ template <int D>
 class BatchWalk {
  public:
   BatchWalk(const Blocks<D>& blocks, const BlockList& list, int block)
-      : blocks_(blocks),
-        list_(list),
-        block_(block),
-        begin_(&list.begin[block * std::size_t{Blocks<D>::kCells}]) {
+      : list_(list), low_(blocks.low(block)), begin_(&list.begin[block * std::size_t{Blocks<D>::kCells}]) {
     at_ = begin_[0];
   }
   /// False when there are no more.
@@ -92,13 +99,13 @@ class BatchWalk {
     if (at_ == last) return false;
     go_to(at_);
     const std::uint32_t first = std::min(begin_[cell_ + 1], at_ + kBatch);
-    batch.cell[0] = batch.cell[1] = blocks_.cell(block_, cell_);
+    batch.cell[0] = batch.cell[1] = Blocks<D>::cell(low_, cell_);
     batch.end[0] = static_cast<int>(first - at_);
     std::uint32_t end = first;
     if (PointBatch<D>::kPairs && first < last) {
       go_to(first);
       if (begin_[cell_ + 1] - at_ <= kBatch) end = begin_[cell_ + 1];
-      if (end > first) batch.cell[1] = blocks_.cell(block_, cell_);
+      if (end > first) batch.cell[1] = Blocks<D>::cell(low_, cell_);
     }
     batch.cells = end > first ? 2 : 1;
     batch.count = batch.end[1] = static_cast<int>(end - at_);
@@ -113,9 +120,9 @@ class BatchWalk {
     while (begin_[cell_ + 1] <= place) ++cell_;
   }
 
-  const Blocks<D>& blocks_;
   const BlockList& list_;
-  int block_, cell_ = 0;
+  Cell<D> low_;  ///< of the block
+  int cell_ = 0;
   const std::uint32_t* begin_;  ///< of the block's cells
   std::uint32_t at_ = 0;        ///< in BlockList::order
 };

@@ -33,40 +33,48 @@ struct FaceSums {
 /// Of the faces of one component.
 struct FaceSumFields {
   Field<MassSum> soil, water;
-  Field<ForceSum> force;  ///< with `soil`
-  Field<RoomSum> room;    ///< with `soil` where there is water
+  Field<ForceSum> force;  ///< with `soil` where there is water
+  Field<double> stress;   ///< N, with `soil` where there is none: ForceSum::force, as nothing resists
+  Field<RoomSum> room;    ///< with `force`
 
   FaceSumFields() = default;
   FaceSumFields(std::size_t faces, bool has_soil, bool has_water)
       : soil(has_soil ? faces : 0),
         water(has_water ? faces : 0),
-        force(has_soil ? faces : 0),
+        force(has_soil && has_water ? faces : 0),
+        stress(has_soil && !has_water ? faces : 0),
         room(has_soil && has_water ? faces : 0) {}
 
   FaceSums operator[](int face) const {
     FaceSums all;
-    if (!soil.empty()) {
-      all.soil_mass = soil[face].mass, all.soil_momentum = soil[face].momentum;
+    if (!soil.empty()) all.soil_mass = soil[face].mass, all.soil_momentum = soil[face].momentum;
+    if (!stress.empty()) all.soil_force = stress[face];
+    if (!force.empty()) {
       all.resistivity = force[face].resistivity, all.soil_force = force[face].force;
+      all.grains = room[face].grains, all.soil_bulk = room[face].bulk;
     }
-    if (!room.empty()) all.grains = room[face].grains, all.soil_bulk = room[face].bulk;
     if (!water.empty()) all.water_mass = water[face].mass, all.water_momentum = water[face].momentum;
     return all;
   }
   void set_soil(int face, const FaceSums& all) {
     if (soil.empty()) return;
     soil[face] = {all.soil_mass, all.soil_momentum};
+    if (!stress.empty()) stress[face] = all.soil_force;
+    if (force.empty()) return;
     force[face] = {all.resistivity, all.soil_force};
-    if (!room.empty()) room[face] = {all.grains, all.soil_bulk};
+    room[face] = {all.grains, all.soil_bulk};
   }
+  /// N, on the grains.
+  void add_force(int face, double f) { (stress.empty() ? force[face].force : stress[face]) += f; }
   void clear(std::size_t face) {
     each([&](auto& field) { field[face] = {}; });
   }
   /// f(field) for those that are kept.
   template <class F>
   void each(F&& f) {
-    if (!soil.empty()) f(soil), f(force);
-    if (!room.empty()) f(room);
+    if (!soil.empty()) f(soil);
+    if (!stress.empty()) f(stress);
+    if (!force.empty()) f(force), f(room);
     if (!water.empty()) f(water);
   }
 };

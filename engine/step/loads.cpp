@@ -55,11 +55,10 @@ void loads_to_faces(State<D>& s) {
         for (int d = 0; d < D; ++d) {
           const double t = rise * load.traction[d];
           s.load_force[d] += m.area * t;
-          for_faces(s.grid, s.soil_walls, kernel, d,
-                    [&](int face, double w, double sign, const Vec<D>& gradient) {
-                      s.sums[d].force[face].force +=
-                          sign * t * (m.volume * dot<D>(m.normal, gradient) + m.area * w);
-                    });
+          for_faces(
+              s.grid, s.soil_walls, kernel, d, [&](int face, double w, double sign, const Vec<D>& gradient) {
+                s.sums[d].add_force(face, sign * t * (m.volume * dot<D>(m.normal, gradient) + m.area * w));
+              });
         }
       }
     }

@@ -43,7 +43,7 @@ struct MassRows {
     }
   }
   /// Of the points `from` to `to`, whose weights along x are `nodes`.
-  QUICKSAND_INLINE RowSums<kRows> sums(const NodesByPoint& nodes, int from, int to) const {
+  QUICKSAND_INLINE RowSums<kRows> sums(const NodesByPoint<2>& nodes, int from, int to) const {
     const auto carried = [&](int k) __attribute__((always_inline)) {
       Lanes<8> along = pair[k];
       if constexpr (S::affine) along += second_of_pairs(turning[k]) * (node_numbers() - at[k]);
@@ -51,9 +51,9 @@ struct MassRows {
     };
     const auto by_arm = [&](int k) __attribute__((always_inline)) { return nodes[k] * second_of_pairs(1); };
     if constexpr (S::affine)
-      return sum_points(from, to, Term(weight, carried), Term(turned, by_arm));
+      return sum_points<2>(from, to, Term(weight, carried), Term(turned, by_arm));
     else
-      return sum_points(from, to, Term(weight, carried));
+      return sum_points<2>(from, to, Term(weight, carried));
   }
 };
 

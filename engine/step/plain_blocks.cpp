@@ -8,7 +8,7 @@ namespace {
 /// Cells of a block, and one more below it along every axis: all that its faces have to do with.
 template <int D>
 bool is_plain(const State<D>& s, int block) {
-  const Cell<D> low = s.blocks.cell(block, 0);
+  const Cell<D> low = s.blocks.low(block);
   for (int d = 0; d < D; ++d)
     if (low[d] == 0 || low[d] + Blocks<D>::kEdge >= s.grid.cells[d]) return false;
   constexpr int edge = Blocks<D>::kEdge + 1;

@@ -19,7 +19,7 @@ struct FaceRows {
 template <int D, class F>
 QUICKSAND_INLINE void for_face_rows(const State<D>& s, int block, F&& f) {
   static_assert(Blocks<D>::kEdge == 4);
-  const int low = s.grid.index(s.blocks.cell(block, 0));
+  const int low = s.grid.index(s.blocks.low(block));
   for (int z = 0; z < (D == 3 ? 4 : 1); ++z)
     for (int y = 0; y < 4; y += 2) {
       const int first = low + y * s.grid.stride[1] + (D == 3 ? z * s.grid.stride[D - 1] : 0);
@@ -27,6 +27,10 @@ QUICKSAND_INLINE void for_face_rows(const State<D>& s, int block, F&& f) {
     }
 }
 
+/// Numbers of eight faces.
+QUICKSAND_INLINE BatchLanes rows_of(const Field<double>& field, const FaceRows& rows) {
+  return joined<4>(lanes_from<4>(field[rows.first]), lanes_from<4>(field[rows.second]));
+}
 /// Pairs of eight faces, [0] the first numbers of them and [1] the second.
 template <class Pair>
 QUICKSAND_INLINE std::array<BatchLanes, 2> pairs_of(const Field<Pair>& field, const FaceRows& rows) {
@@ -41,14 +45,18 @@ struct SumsInLanes {
 
   QUICKSAND_INLINE SumsInLanes(const FaceSumFields& sums, const FaceRows& rows) {
     if constexpr (P::soil) {
-      const auto mass = pairs_of(sums.soil, rows), force = pairs_of(sums.force, rows);
-      soil_mass = mass[0], soil_momentum = mass[1], resistivity = force[0], soil_force = force[1];
+      const auto mass = pairs_of(sums.soil, rows);
+      soil_mass = mass[0], soil_momentum = mass[1];
     }
+    if constexpr (P::soil && !P::water) soil_force = rows_of(sums.stress, rows);
     if constexpr (P::water) {
       const auto mass = pairs_of(sums.water, rows);
       water_mass = mass[0], water_momentum = mass[1];
     }
-    if constexpr (P::soil && P::water) grains = pairs_of(sums.room, rows)[0];
+    if constexpr (P::soil && P::water) {
+      const auto force = pairs_of(sums.force, rows);
+      resistivity = force[0], soil_force = force[1], grains = pairs_of(sums.room, rows)[0];
+    }
   }
 };
 
@@ -79,9 +87,6 @@ QUICKSAND_INLINE std::array<BatchLanes, 4> speeds_of(const Field<FaceSpeeds>& sp
 QUICKSAND_INLINE void put_rows(Field<double>& field, const FaceRows& rows, const BatchLanes& v) {
   put_lanes<4>(field[rows.first], low_half<8>(v));
   put_lanes<4>(field[rows.second], high_half<8>(v));
-}
-QUICKSAND_INLINE BatchLanes rows_of(const Field<double>& field, const FaceRows& rows) {
-  return joined<4>(lanes_from<4>(field[rows.first]), lanes_from<4>(field[rows.second]));
 }
 
 /// viscous_acceleration, m/s².

@@ -78,11 +78,40 @@ QUICKSAND_INLINE RowFactors<WindowRows<d, D>::count> forces_across(const Kernel&
   return force;
 }
 
-/// Weights of points on the nodes along x, and their derivatives: on four faces or three centres.
+/// Weights of points on the nodes along x, on four faces or three centres, and with their derivatives.
 struct AlongX {
-  NodesByPoint w, dw;
+  NodesByPoint<2> twice, with_slopes;  ///< pairs {w, w} and, with water, {w, dw}
+  NodesByPoint<1> weights, slopes;     ///< without water
   template <int n>
-  QUICKSAND_INLINE explicit AlongX(const WindowNodes<n>& nodes) : w(nodes.w), dw(nodes.dw) {}
+  QUICKSAND_INLINE AlongX(const WindowNodes<n>& nodes, bool has_water) : twice(by_point(nodes.w, nodes.w)) {
+    if (has_water)
+      with_slopes = by_point(nodes.w, nodes.dw);
+    else
+      weights = by_point(nodes.w), slopes = by_point(nodes.dw);
+  }
+};
+
+/// The force of the stress on the rows of a window.
+template <int rows>
+struct ForceRows {
+  const AlongX& nodes;
+  const RowFactors<rows>& weight;
+  RowFactors<rows> across;  ///< N
+  Kept<> own;               ///< N, by the derivatives along x
+  /// N.
+  QUICKSAND_INLINE RowSums<rows, 1> sums(int from, int to) const {
+    const auto along = [&](int k) __attribute__((always_inline)) { return nodes.slopes[k] * own[k]; };
+    const auto beside = [&](int k) __attribute__((always_inline)) { return nodes.weights[k]; };
+    return sum_points<1>(from, to, Term(weight, along), Term(across, beside));
+  }
+  /// ForceSum; `pair` is the resistivity and `own`.
+  QUICKSAND_INLINE RowSums<rows> sums_with(const PairsByPoint& pair, int from, int to) const {
+    const auto along = [&](int k) __attribute__((always_inline)) { return nodes.with_slopes[k] * pair[k]; };
+    const auto beside = [&](int k) __attribute__((always_inline)) {
+      return nodes.twice[k] * second_of_pairs(1);
+    };
+    return sum_points<2>(from, to, Term(weight, along), Term(across, beside));
+  }
 };
 
 /// What a batch leaves on the faces of component d.
@@ -92,33 +121,30 @@ QUICKSAND_INLINE void soil_to_component(State<D>& s, const PointBatch<D>& batch,
                                         const AlongX& nodes, const SoilShare<D>& share, const BatchLanes& v,
                                         const BatchLanes& hoop) {
   const MassRows<S, d, D> mass(kernel, share.mass, v, turning_of<S, d>(s.soil, batch, share.mass, s.grid.h));
-  const auto across = forces_across<S, d, D>(kernel, share, hoop);
-  const PairsByPoint resistivity(share.resistivity, BatchLanes{}), own(BatchLanes{}, share.row(d, 0)),
-      room(share.grains, share.bulk);
-  const auto stressed = [&](int k) __attribute__((always_inline)) {
-    return nodes.w[k] * resistivity[k] + nodes.dw[k] * own[k];
-  };
-  const auto stressed_across = [&](int k) __attribute__((always_inline)) {
-    return nodes.w[k] * second_of_pairs(1);
-  };
-  const auto taken = [&](int k) __attribute__((always_inline)) { return nodes.w[k] * room[k]; };
+  const ForceRows<WindowRows<d, D>::count> force{
+      nodes, mass.weight, forces_across<S, d, D>(kernel, share, hoop), share.row(d, 0)};
+  const PairsByPoint resisted(share.resistivity, share.row(d, 0)), room(share.grains, share.bulk);
+  const auto taken = [&](int k) __attribute__((always_inline)) { return nodes.twice[k] * room[k]; };
   const auto mirrored = [&](int face, double m) { s.image[d][face].soil += 2 * m; };
   const auto nothing = [](int, double) {};
   FaceSumFields& sums = s.sums[d];
   windows.each(
       batch, [&](const auto& window, int from, int to) __attribute__((always_inline)) {
-        add_to_faces<d>(s.grid, window, mass.sums(nodes.w, from, to), sums.soil, mirrored);
-        const auto force = sum_points(from, to, Term(mass.weight, stressed), Term(across, stressed_across));
-        add_to_faces<d>(s.grid, window, force, sums.force, nothing);
-        if (!s.has_water) return;
-        add_to_faces<d>(s.grid, window, sum_points(from, to, Term(mass.weight, taken)), sums.room, nothing);
+        add_to_faces<d>(s.grid, window, mass.sums(nodes.twice, from, to), sums.soil, mirrored);
+        if (!s.has_water) {
+          add_to_faces<d>(s.grid, window, force.sums(from, to), sums.stress, nothing);
+          return;
+        }
+        add_to_faces<d>(s.grid, window, force.sums_with(resisted, from, to), sums.force, nothing);
+        add_to_faces<d>(s.grid, window, sum_points<2>(from, to, Term(mass.weight, taken)), sums.room,
+                        nothing);
       });
 }
 
 /// What a batch takes of the cells' room.
 template <int D, class Kernel>
 QUICKSAND_INLINE void soil_to_cells(State<D>& s, const PointBatch<D>& batch, const Kernel& kernel,
-                                    const NodesByPoint& centers, const SoilShare<D>& share) {
+                                    const NodesByPoint<2>& centers, const SoilShare<D>& share) {
   // Measured with the water's own kernels, so that grains and water fold at the same walls.
   const BatchWindows<D> cells(s.grid, s.water_walls, batch);
   const PairsByPoint room(share.grains, share.bulk);
@@ -129,7 +155,7 @@ QUICKSAND_INLINE void soil_to_cells(State<D>& s, const PointBatch<D>& batch, con
   };
   cells.each(
       batch, [&](const auto& window, int from, int to) __attribute__((always_inline)) {
-        for_centers_of<D>(window, sum_points(from, to, Term(weight, taken)), add);
+        for_centers_of<2>(window, sum_points<2>(from, to, Term(weight, taken)), add);
       });
 }
 
@@ -140,13 +166,13 @@ void soil_to_faces(State<D>& s, const PointBatch<D>& batch) {
   kernel.find(s.grid, batch.places(), x);
   const SoilShare<D> share = soil_share(s, batch);
   const BatchWindows<D> windows(s.grid, s.soil_walls, batch);
-  const AlongX faces(kernel.face[0]), centers(kernel.center[0]);
+  const AlongX faces(kernel.face[0], s.has_water), centers(kernel.center[0], s.has_water);
   for_components<D>([&](auto d) __attribute__((always_inline)) {
     BatchLanes hoop{};
     if constexpr (S::axial && d == 0) hoop = s.grid.h * share.force[2] / x[0];
     soil_to_component<S, d>(s, batch, windows, kernel, d == 0 ? faces : centers, share, v[d], hoop);
   });
-  if (s.counts_room) soil_to_cells(s, batch, kernel, centers.w, share);
+  if (s.counts_room) soil_to_cells(s, batch, kernel, centers.twice, share);
 }
 
 }  // namespace quicksand

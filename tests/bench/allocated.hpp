@@ -30,7 +30,8 @@ double bytes_of(const Field<T>& field) {
   return pages * static_cast<double>(page);
 }
 inline double bytes_of(const FaceSumFields& sums) {
-  return bytes_of(sums.soil) + bytes_of(sums.force) + bytes_of(sums.room) + bytes_of(sums.water);
+  return bytes_of(sums.soil) + bytes_of(sums.force) + bytes_of(sums.stress) + bytes_of(sums.room) +
+         bytes_of(sums.water);
 }
 template <class Array, std::size_t N>
 double bytes_of(const std::array<Array, N>& arrays) {

@@ -94,7 +94,7 @@ TEST(Blocks, EachFaceIsVisitedOnce) {
 /// Coordinates of a block.
 template <int D>
 Cell<D> place_of(const Blocks<D>& blocks, int number) {
-  Cell<D> at = blocks.cell(number, 0);
+  Cell<D> at = blocks.low(number);
   for (int& c : at) c /= Blocks<D>::kEdge;
   return at;
 }
@@ -201,7 +201,7 @@ TEST(Blocks, GroupIsAStableSort) {
     for (int k = 0; k < Blocks<2>::kCells; ++k) {
       const std::size_t at = static_cast<std::size_t>(b) * Blocks<2>::kCells + k;
       const PointRange points{list.begin[at], list.begin[at + 1]};
-      const Cell<2> c = blocks.cell(b, k);
+      const Cell<2> c = Blocks<2>::cell(blocks.low(b), k);
       EXPECT_EQ(points.begin, rest.begin);  // cell after cell
       rest.begin = points.end;
       EXPECT_EQ(blocks.number_of(blocks.block_of(c)), b);
