@@ -41,7 +41,7 @@ PressureReport conjugate_gradients(const Grid<D>& grid, PressureSystem<D>& m, Mu
   PressureReport report{static_cast<int>(rows)};
   std::vector<double>&x = m.solution, &r = m.work.residual, &z = m.work.preconditioned;
   std::vector<double>&direction = m.work.direction, &image = m.work.image;
-  for (std::vector<double>* v : {&r, &z, &direction, &image}) v->resize(rows);
+  for (std::vector<double>* v : {&r, &z, &direction, &image}) resize_with_spare(*v, rows);
   multigrid.build(grid, m);
   m.changed = false;
   const auto times = [&](const std::vector<double>& in, std::vector<double>& out) {

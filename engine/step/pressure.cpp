@@ -98,7 +98,7 @@ void number_rows(State<D>& s, PressureSystem<D>& m) {
     }
     if (color == 0) m.even = row;
   }
-  m.cell.resize(row);
+  resize_with_spare(m.cell, static_cast<std::size_t>(row));
   std::atomic<bool> changed = m.changed;
   s.blocks.all([&](int b) {
     bool differ = false;

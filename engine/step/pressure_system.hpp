@@ -1,8 +1,16 @@
 #pragma once
 #include <array>
+#include <cstddef>
 #include <vector>
 
 namespace quicksand {
+
+/// Room for n entries and an eighth: what grows by a few from step to step would double by itself.
+template <class T>
+void resize_with_spare(std::vector<T>& v, std::size_t n) {
+  if (n > v.capacity()) v.reserve(n + n / 8);
+  v.resize(n);
+}
 
 /// Rows diagonal·x − Σ coupling·x[neighbour], member by member. Sides of a cell: 2d below it along axis d,
 /// 2d + 1 above it.
@@ -12,8 +20,8 @@ struct Stencil {
   std::array<std::vector<double>, 2 * D> coupling;  ///< ≥ 0; 0 where there is no neighbour
 
   void resize(std::size_t rows) {
-    diagonal.resize(rows);
-    for (auto& side : coupling) side.resize(rows);
+    resize_with_spare(diagonal, rows);
+    for (auto& side : coupling) resize_with_spare(side, rows);
   }
 };
 
@@ -47,8 +55,8 @@ struct PressureSystem {
     const std::size_t rows = cell.size();
     changed = changed || rhs.size() != rows;
     matrix.resize(rows);
-    for (auto& side : neighbor) side.resize(rows);
-    for (auto* v : {&rhs, &solution, &change}) v->resize(rows);
+    for (auto& side : neighbor) resize_with_spare(side, rows);
+    for (auto* v : {&rhs, &solution, &change}) resize_with_spare(*v, rows);
   }
   static constexpr double kBytesPerRow = (8 + 2 * D) * sizeof(double) + (1 + 2 * D) * sizeof(int);
 };

@@ -1,5 +1,6 @@
 // What the general program adds to the bare steps of a scene: `run` with a sink that drops everything,
-// against a loop over the same steps. Each from the same start.
+// against a loop over the same steps. Each from the same start, and each with a state to go back to when a
+// step fails, which a program for one kind of scene needs as well.
 //
 //   program/<scene>/points:<n>/{steps,run}
 
@@ -51,8 +52,9 @@ void bare_steps(benchmark::State& state, const Scene& scene, long steps) {
   forget_peak();
   for (auto _ : state) {
     with_threads(1, [&] {
-      const auto work = start(scene);
-      work->frame();
+      const auto work = start(scene, true);
+      state.counters["good_bytes_per_point"] = work->good_bytes / work->points();
+      work->step();  // as far as the run, whose first step is not shorter than the others
       const auto begin = std::chrono::steady_clock::now();
       for (long i = 0; i < steps; ++i) work->step();
       const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;

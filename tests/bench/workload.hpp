@@ -9,6 +9,7 @@
 #include "engine/plan/step_bounds.hpp"
 #include "engine/run/frame.hpp"
 #include "engine/run/setup.hpp"
+#include "engine/run/snapshot.hpp"
 #include "engine/step/step.hpp"
 #include "tests/bench/allocated.hpp"
 #include "tests/bench/memory.hpp"
@@ -21,21 +22,24 @@ class Workload {
  public:
   virtual ~Workload() = default;
   virtual PressureReport step() = 0;
-  /// Makes a frame of all fields, as a run does, and drops it.
-  virtual void frame() const = 0;
   virtual double points() const = 0;
   virtual const PhaseSeconds& phase_seconds() const = 0;
   virtual Allocated allocated() const = 0;
 
   /// What came to be resident with the state and its first steps, bytes.
   double resident = 0;
+  /// Of the state that is kept to go back to, bytes; 0 if none is.
+  double good_bytes = 0;
 };
 
 template <int D>
 class WorkloadIn final : public Workload {
  public:
-  explicit WorkloadIn(const Scene& scene) : scene_(scene), state_(make_state<D>(scene)) {
+  WorkloadIn(const Scene& scene, bool as_run) : scene_(scene), state_(make_state<D>(scene)) {
+    Frame frame;
+    if (as_run) frame = make_frame(scene_, state_, 0, "");
     last_ = advance(state_, kFirstStep);
+    if (as_run) keep_good();
   }
 
   PressureReport step() override {
@@ -44,18 +48,27 @@ class WorkloadIn final : public Workload {
     last_ = advance(state_, choose_step(scene_, now).seconds);
     return last_.pressure;
   }
-  void frame() const override { make_frame(scene_, state_, 0, ""); }
   double points() const override { return static_cast<double>(state_.soil.size() + state_.water.size()); }
   const PhaseSeconds& phase_seconds() const override { return state_.phase_seconds; }
   Allocated allocated() const override { return quicksand::bench::allocated(state_); }
 
  private:
+  void keep_good() {
+    Saver counter;
+    counter.only_counts = true;
+    save_state(counter, state_);
+    good_.bytes.reserve(counter.count);
+    save_state(good_, state_);
+    good_bytes = static_cast<double>(good_.bytes.size());
+  }
+
   /// s, only to have the soil's own limit of the next step measured.
   static constexpr double kFirstStep = 1e-7;
 
   Scene scene_;
   State<D> state_;
   StepReport<D> last_;
+  Saver good_;
 };
 
 /// Steps before anything is measured: buffers have their sizes, the pressure its history, and asks for as
@@ -66,10 +79,11 @@ inline constexpr int kWarmUpSteps = 24;
 /// (engine/step/scheme.hpp); `advance` chooses.
 inline constexpr bool kReducedSteps = true;
 
-/// A scene after its first step.
-inline std::unique_ptr<Workload> start(const Scene& scene) {
-  if (scene.domain.dimension == Dimension::space) return std::make_unique<WorkloadIn<3>>(scene);
-  return std::make_unique<WorkloadIn<2>>(scene);
+/// A scene after its first step. As in any run, if `as_run`: a frame of all fields is made before it and held
+/// back until the state after it is kept, to go back to when a later step fails.
+inline std::unique_ptr<Workload> start(const Scene& scene, bool as_run = false) {
+  if (scene.domain.dimension == Dimension::space) return std::make_unique<WorkloadIn<3>>(scene, as_run);
+  return std::make_unique<WorkloadIn<2>>(scene, as_run);
 }
 
 /// A scene after some steps, with the memory that they took.
