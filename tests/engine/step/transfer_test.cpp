@@ -57,7 +57,9 @@ void expect_rows_agree(Scene scene) {
     for (double& component : stress) component = 1e3 * any(random);
   points_to_faces(s);
   std::array<std::vector<FaceSums>, D> sums;
-  for (auto& of_face : sums) of_face.resize(s.grid.count());
+  std::array<std::vector<FaceImage>, D> image;
+  std::vector<CellSums> cells(s.grid.count());
+  for (int d = 0; d < D; ++d) sums[d].resize(s.grid.count()), image[d].resize(s.grid.count());
   for (std::size_t p = 0; p < s.soil.size(); ++p) {
     const PointKernel<D> kernel(s.grid, s.soil.x[p]);
     const double grains = s.soil.mass[p] / 2650, bulk = grains / (1 - s.soil.porosity[p]);
@@ -70,11 +72,16 @@ void expect_rows_agree(Scene scene) {
           sums[d][face].resistivity += w * bulk * s.constants.soils[0].drag.resistivity(s.soil.porosity[p]);
         }
         sums[d][face].soil_momentum += sign * w * s.soil.mass[p] * s.soil.v[p][d];
+        if (sign < 0) image[d][face].soil += 2 * w * s.soil.mass[p];
         for (int j = 0; j < D; ++j) {
           const int shear = D == 2 ? 3 : d + j == 1 ? 3 : d + j == 3 ? 4 : 5;
           sums[d][face].soil_force -= sign * bulk * t[d == j ? d : shear] * g[j];
         }
       });
+    if (!s.counts_room) continue;
+    for_centers(s.grid, s.water_walls, kernel, [&](int cell, double w) {
+      cells[cell].grains += w * grains, cells[cell].soil_bulk += w * bulk;
+    });
   }
   for (std::size_t p = 0; p < s.water.size(); ++p) {
     const PointKernel<D> kernel(s.grid, s.water.x[p]);
@@ -82,7 +89,10 @@ void expect_rows_agree(Scene scene) {
       for_faces(s.grid, s.water_walls, kernel, d, [&](int face, double w, double sign, const Vec<D>&) {
         sums[d][face].water_mass += w * s.water.mass[p];
         sums[d][face].water_momentum += sign * w * s.water.mass[p] * s.water.v[p][d];
+        if (sign < 0) image[d][face].water += 2 * w * s.water.mass[p];
       });
+    for_centers(s.grid, s.water_walls, kernel,
+                [&](int cell, double w) { cells[cell].water += w * s.water.mass[p] / 1000; });
   }
   for (int d = 0; d < D; ++d)
     for (int i = 0; i < s.grid.count(); ++i) {
@@ -95,7 +105,14 @@ void expect_rows_agree(Scene scene) {
       EXPECT_NEAR(a.soil_force, b.soil_force, 1e-10);
       EXPECT_NEAR(a.water_mass, b.water_mass, 1e-12);
       EXPECT_NEAR(a.water_momentum, b.water_momentum, 1e-12);
+      EXPECT_NEAR(s.image[d][i].soil, image[d][i].soil, 1e-12);
+      EXPECT_NEAR(s.image[d][i].water, image[d][i].water, 1e-12);
     }
+  for (int i = 0; i < s.grid.count(); ++i) {
+    EXPECT_NEAR(s.cell_sums[i].water, cells[i].water, 1e-15);
+    EXPECT_NEAR(s.cell_sums[i].grains, cells[i].grains, 1e-15);
+    EXPECT_NEAR(s.cell_sums[i].soil_bulk, cells[i].soil_bulk, 1e-15);
+  }
 }
 
 TEST(Transfer, RowsInLanesAreNodesInScalars) {
