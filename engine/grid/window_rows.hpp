@@ -28,6 +28,7 @@ struct WindowRows {
 /// Pairs of numbers, point by point.
 struct alignas(64) PairsByPoint {
   std::array<double, 2 * kBatch> at;
+  PairsByPoint() = default;
   QUICKSAND_INLINE PairsByPoint(const BatchLanes& a, const BatchLanes& b) {
     const auto both = interleaved<kBatch>(a, b);
     put_lanes<kBatch>(at[0], both[0]), put_lanes<kBatch>(at[kBatch], both[1]);

@@ -123,7 +123,8 @@ QUICKSAND_INLINE void soil_to_component(State<D>& s, const PointBatch<D>& batch,
   const MassRows<S, d, D> mass(kernel, share.mass, v, turning_of<S, d>(s.soil, batch, share.mass, s.grid.h));
   const ForceRows<WindowRows<d, D>::count> force{
       nodes, mass.weight, forces_across<S, d, D>(kernel, share, hoop), share.row(d, 0)};
-  const PairsByPoint resisted(share.resistivity, share.row(d, 0)), room(share.grains, share.bulk);
+  PairsByPoint resisted, room;  // with water
+  if (s.has_water) resisted = {share.resistivity, share.row(d, 0)}, room = {share.grains, share.bulk};
   const auto taken = [&](int k) __attribute__((always_inline)) { return nodes.twice[k] * room[k]; };
   const auto mirrored = [&](int face, double m) { s.image[d][face].soil += 2 * m; };
   const auto nothing = [](int, double) {};
