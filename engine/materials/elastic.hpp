@@ -14,13 +14,12 @@ struct Elastic {
   double constrained() const { return bulk + 4 * shear / 3; }  ///< Pa, Ec
   double poisson() const { return (3 * bulk - 2 * shear) / (2 * (3 * bulk + shear)); }
 
-  /// `stress` after a strain increment, without yielding.
+  /// Adds what a strain increment makes of stress, without yielding.
   template <class T, std::size_t N>
-  QUICKSAND_INLINE std::array<T, N> stretched(std::array<T, N> stress, const std::array<T, N>& strain) const {
+  QUICKSAND_INLINE void stretch(std::array<T, N>& stress, const std::array<T, N>& strain) const {
     const T volume = lame() * trace(strain);
     for (std::size_t i = 0; i < 3; ++i) stress[i] += 2 * shear * strain[i] + volume;
     for (std::size_t i = 3; i < N; ++i) stress[i] += 2 * shear * strain[i];
-    return stress;
   }
   /// J/m³ stored by a stress.
   template <std::size_t N>

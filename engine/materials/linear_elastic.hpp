@@ -27,13 +27,13 @@ struct LinearElasticLaw {
   }
   template <int D>
   int update(SoilState<D>& state, const Strain<D>& strain, double /*porosity*/) const {
-    state.stress = elastic.stretched(state.stress, strain);
+    elastic.stretch(state.stress, strain);
     return 0;
   }
   template <int D>
   QUICKSAND_INLINE int update_batch(SoilState<D, BatchLanes>& state, const Strain<D, BatchLanes>& strain,
                                     const BatchLanes& /*porosity*/, int /*count*/) const {
-    state.stress = elastic.stretched(state.stress, strain);
+    elastic.stretch(state.stress, strain);
     return 0;
   }
   template <int D>

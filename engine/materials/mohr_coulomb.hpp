@@ -88,7 +88,7 @@ struct MohrCoulombLaw {
   }
   template <int D>
   int update(SoilState<D>& state, const Strain<D>& strain, double /*porosity*/) const {
-    state.stress = elastic.stretched(state.stress, strain);
+    elastic.stretch(state.stress, strain);
     const double c = cohesion(state.plastic_strain);
     if (may_yield<D>(c, state)) yield(c, state);
     return 0;

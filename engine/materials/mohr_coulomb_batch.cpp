@@ -9,7 +9,7 @@ namespace quicksand {
 template <int D>
 int MohrCoulombLaw::update_batch(SoilState<D, BatchLanes>& state, const Strain<D, BatchLanes>& strain,
                                  const BatchLanes& /*porosity*/, int count) const {
-  state.stress = elastic.stretched(state.stress, strain);
+  elastic.stretch(state.stress, strain);
   const BatchLanes c = cohesion(state.plastic_strain);
   const auto yields = may_yield<D>(c, state);
   if (!any_of(yields, count)) return 0;

@@ -122,6 +122,11 @@ class Blocks {
   void group(BlockList& list) const {
     const auto slot = [&](int key) { return (number_[key / kCells] - 1) * kCells + key % kCells; };
     const std::size_t slots = static_cast<std::size_t>(count()) * kCells, parts = parts_of(list.key.size());
+    if (list.key.empty()) {  // a phase that the scene does not have
+      list.order.clear();
+      if (list.begin.size() != slots + 1 || list.begin.back() != 0) list.begin.assign(slots + 1, 0);
+      return;
+    }
     // Per part and cell: how many points; then the place of the next one.
     const auto next = std::make_unique_for_overwrite<std::uint32_t[]>(parts * slots);
     for_parts(list.key, parts, [&](std::size_t part, auto&& stretches) {

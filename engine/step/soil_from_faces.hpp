@@ -89,15 +89,15 @@ QUICKSAND_INLINE BatchLanes update_soil(State<D>& s, const PointBatch<D>& batch,
   const BatchLanes n = strained_porosity<D>(before, volume_ratio<D, BatchLanes>(l, dt) * (1.0 + dt * hoop),
                                             batch.count, totals.interventions.clamped_values);
   batch.put(n, soil.porosity);
-  SoilState<D, BatchLanes> old{batch.get(soil.stress), batch.get(soil.plastic_strain), {}};
-  if (!soil.preconsolidation.empty()) old.preconsolidation = batch.get(soil.preconsolidation);
-  SoilState<D, BatchLanes> now = old;
+  SoilState<D, BatchLanes> now{batch.get(soil.stress), batch.get(soil.plastic_strain), {}};
+  if (!soil.preconsolidation.empty()) now.preconsolidation = batch.get(soil.preconsolidation);
+  const BatchLanes plastic_strain = now.plastic_strain, preconsolidation = now.preconsolidation;
   totals.interventions.clamped_values += update_states<D>(material, batch.count, now, before, l, dt, hoop);
   const auto apart = n > max_porosity;  // grains that do not touch
   if (any_of(apart, batch.count)) {
     for (BatchLanes& component : now.stress) component = where(apart, BatchLanes{}, component);
-    now.plastic_strain = where(apart, old.plastic_strain, now.plastic_strain);
-    now.preconsolidation = where(apart, old.preconsolidation, now.preconsolidation);
+    now.plastic_strain = where(apart, plastic_strain, now.plastic_strain);
+    now.preconsolidation = where(apart, preconsolidation, now.preconsolidation);
   }
   batch.put(now.stress, soil.stress);
   batch.put(now.plastic_strain, soil.plastic_strain);
