@@ -153,7 +153,8 @@ class Acceptance:
             reduced = self.measured.context["reduced_steps"] == "yes"
             against = "its own instantiation" if reduced else "the bare steps of State<D>, as there is no reduced one"
             yield Verdict(5, f"{title} scene through the program, against {against}",
-                          "≤ 3 % slower, the same memory", f"{time:+.1%}, memory {memory:+.1%} (both with a state to go back to, {good:.0f} bytes per point)",
+                          "≤ 3 % slower, the same memory",
+                          f"{time:+.1%}, memory {memory:+.1%} (both with a state to go back to, {good:.0f} bytes per point)",
                           reduced and time <= 0.03 and abs(memory) <= 0.01)
 
     def line6(self):
