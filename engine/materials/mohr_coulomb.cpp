@@ -106,8 +106,17 @@ MohrCoulombReturn return_map(const MohrCoulomb& law, const Elastic& e, const std
 FaceReturn FaceReturn::of(const MohrCoulomb& law, const Elastic& e) {
   const Face main{0, 2};
   const auto direction = flow(law, main);
-  return {stress_of(e, direction), 1 / stiffness(law, e, main, main),
-          std::sqrt(2.0 / 3.0 * contracted(deviator(direction)))};
+  const double own = stiffness(law, e, main, main);
+  const auto edge = [&](Face second) {
+    const auto along = flow(law, second);
+    // Both stiffnesses between the faces are one: they share an axis, and all faces change volume alike.
+    const double between = stiffness(law, e, main, second), det = own * own - between * between;
+    const auto [a, b, c] = deviator(direction);
+    const auto [x, y, z] = deviator(along);
+    return EdgeReturn{stress_of(e, along), own / det, between / det, 2.0 / 3.0 * (a * x + b * y + c * z)};
+  };
+  return {stress_of(e, direction), 1 / own, std::sqrt(2.0 / 3.0 * contracted(deviator(direction))),
+          edge({1, 2}), edge({0, 1})};
 }
 
 MohrCoulombLaw MohrCoulombLaw::from(const SoilModel& m) {

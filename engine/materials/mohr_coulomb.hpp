@@ -44,11 +44,20 @@ MohrCoulombReturn return_map(const MohrCoulomb& law, const Elastic& elastic,
 MohrCoulombReturn return_to_cutoff(const MohrCoulomb& law, const Elastic& elastic,
                                    const std::array<double, 3>& trial);
 
-/// The return onto the face σ1–σ3 where it ends there, as it mostly does: what does not depend on the trial.
+/// The return onto the edge where the face σ1–σ3 and another one meet: what does not depend on the trial.
+struct EdgeReturn {
+  std::array<double, 3> drop{};  ///< Pa, of the stress per plastic multiplier of the other face
+  double own = 0, other = 0;  ///< 1/Pa, multiplier of a face: own × its excess − other × the other's excess
+  double shear = 0;           ///< –, 2/3 e₁:e₂ of both faces, each per plastic multiplier
+};
+
+/// The return onto the face σ1–σ3, where it mostly ends, and onto its edges: what does not depend on the
+/// trial nor on the cohesion.
 struct FaceReturn {
-  std::array<double, 3> drop{};  ///< Pa, of the stress per plastic multiplier
-  double compliance = 0;         ///< 1/Pa, plastic multiplier per excess over yield; 0: unknown
-  double shear = 0;              ///< –, √(2/3 e:e) per plastic multiplier
+  std::array<double, 3> drop{};       ///< Pa, of the stress per plastic multiplier
+  double compliance = 0;              ///< 1/Pa, plastic multiplier per excess over yield; 0: unknown
+  double shear = 0;                   ///< –, √(2/3 e:e) per plastic multiplier
+  EdgeReturn compression, extension;  ///< with σ2–σ3, where σ1 = σ2; with σ1–σ2, where σ2 = σ3
 
   static FaceReturn of(const MohrCoulomb& law, const Elastic& elastic);
 };
