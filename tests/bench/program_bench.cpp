@@ -1,6 +1,7 @@
 // What the general program adds to the bare steps of a scene: `run` with a sink that drops everything,
 // against a loop over the same steps. Each from the same start, and each with a state to go back to when a
-// step fails, which a program for one kind of scene needs as well.
+// step fails and with a frame at the start and at the end, which a program for one kind of scene needs as
+// well.
 //
 //   program/<scene>/points:<n>/{steps,run}
 
@@ -58,6 +59,7 @@ void bare_steps(benchmark::State& state, const Scene& scene, long steps) {
       const auto begin = std::chrono::steady_clock::now();
       for (long i = 0; i < steps; ++i) work->step();
       const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
+      work->last_frame();
       report(state, took.count(), work->points() * static_cast<double>(steps), work->points(),
              peak_bytes() - before);
     });

@@ -8,6 +8,7 @@
 
 #include "engine/plan/step_bounds.hpp"
 #include "engine/run/frame.hpp"
+#include "engine/run/good_state.hpp"
 #include "engine/run/setup.hpp"
 #include "engine/run/snapshot.hpp"
 #include "engine/step/step.hpp"
@@ -22,6 +23,8 @@ class Workload {
  public:
   virtual ~Workload() = default;
   virtual PressureReport step() = 0;
+  /// Makes a frame of all fields, as a run does at its end, and drops it.
+  virtual void last_frame() const = 0;
   virtual double points() const = 0;
   virtual const PhaseSeconds& phase_seconds() const = 0;
   virtual Allocated allocated() const = 0;
@@ -48,18 +51,15 @@ class WorkloadIn final : public Workload {
     last_ = advance(state_, choose_step(scene_, now).seconds);
     return last_.pressure;
   }
+  void last_frame() const override { make_frame(scene_, state_, 1, ""); }
   double points() const override { return static_cast<double>(state_.soil.size() + state_.water.size()); }
   const PhaseSeconds& phase_seconds() const override { return state_.phase_seconds; }
   Allocated allocated() const override { return quicksand::bench::allocated(state_); }
 
  private:
   void keep_good() {
-    Saver counter;
-    counter.only_counts = true;
-    save_state(counter, state_);
-    good_.bytes.reserve(counter.count);
-    save_state(good_, state_);
-    good_bytes = static_cast<double>(good_.bytes.size());
+    good_.take(0, {}, [&](Saver& to) { save_state(to, state_); });
+    good_bytes = static_cast<double>(good_.checkpoint().state.size());
   }
 
   /// s, only to have the soil's own limit of the next step measured.
@@ -68,7 +68,8 @@ class WorkloadIn final : public Workload {
   Scene scene_;
   State<D> state_;
   StepReport<D> last_;
-  Saver good_;
+  RunOptions options_;
+  GoodState good_{options_};
 };
 
 /// Steps before anything is measured: buffers have their sizes, the pressure its history, and asks for as
