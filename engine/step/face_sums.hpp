@@ -72,10 +72,20 @@ struct FaceSumFields {
   /// f(field) for those that are kept.
   template <class F>
   void each(F&& f) {
-    if (!soil.empty()) f(soil);
-    if (!stress.empty()) f(stress);
-    if (!force.empty()) f(force), f(room);
-    if (!water.empty()) f(water);
+    each_of(*this, f);
+  }
+  template <class F>
+  void each(F&& f) const {
+    each_of(*this, f);
+  }
+
+ private:
+  template <class Fields, class F>
+  static void each_of(Fields& fields, F&& f) {
+    if (!fields.soil.empty()) f(fields.soil);
+    if (!fields.stress.empty()) f(fields.stress);
+    if (!fields.force.empty()) f(fields.force), f(fields.room);
+    if (!fields.water.empty()) f(fields.water);
   }
 };
 

@@ -131,6 +131,7 @@ void add_plain(const State<D>& s, int block, double dt, Sum<D>& sum) {
   const double rho = s.constants.water_density, per_density = 1 / rho;
   const double least = kMassCutoff * rho * s.volume.uniform;
   std::array<BatchLanes, D> reaction{}, grid{};
+  ask_for_next_sums(s, block);
   for_face_rows(
       s, block, [&](const FaceRows& rows, int d) __attribute__((always_inline)) {
         const SumsInLanes<P> sums(s.sums[d], rows);

@@ -27,6 +27,25 @@ QUICKSAND_INLINE void for_face_rows(const State<D>& s, int block, F&& f) {
     }
 }
 
+/// Asks for what lies on faces, so that it is there when it is read, or written to.
+template <bool to_write = false, class T>
+QUICKSAND_INLINE void ask_for(const Field<T>& field, const FaceRows& rows) {
+  constexpr std::ptrdiff_t size = sizeof(T), line = 64;
+  for (const int first : {rows.first, rows.second})
+    for (std::ptrdiff_t at = first * size; at < (first + 4) * size; at += line)
+      __builtin_prefetch(reinterpret_cast<const char*>(field.data()) + at, to_write);
+}
+/// The sums of the block after this one, mostly the next to be worked on: blocks are narrow, and the
+/// processor does not foresee by itself where rows go on.
+template <int D>
+QUICKSAND_INLINE void ask_for_next_sums(const State<D>& s, int block) {
+  if (block + 1 == s.blocks.count()) return;
+  for_face_rows(
+      s, block + 1, [&](const FaceRows& rows, int d) __attribute__((always_inline)) {
+        s.sums[d].each([&](const auto& field) __attribute__((always_inline)) { ask_for(field, rows); });
+      });
+}
+
 /// Numbers of eight faces.
 QUICKSAND_INLINE BatchLanes rows_of(const Field<double>& field, const FaceRows& rows) {
   return joined<4>(lanes_from<4>(field[rows.first]), lanes_from<4>(field[rows.second]));
@@ -123,6 +142,8 @@ template <class P, int D>
 QUICKSAND_INLINE void predict_wet(State<D>& s, int d, const FaceRows& rows, double dt) {
   const double rho = s.constants.water_density, inertia = s.constants.inertia, fall = s.constants.fall(d);
   const double per_volume = 1 / s.volume.uniform, least = kMassCutoff * rho * s.volume.uniform;
+  ask_for<true>(s.flow[d], rows), ask_for<true>(s.speeds[d], rows);
+  ask_for<true>(s.flux[d], rows), ask_for<true>(s.flux_response[d], rows);
   const SumsInLanes<P> sums(s.sums[d], rows);
   const BatchLanes none{}, one = all_lanes<BatchLanes>(1);
   const auto water = sums.water_mass > least;
@@ -182,6 +203,7 @@ QUICKSAND_INLINE void predict_wet(State<D>& s, int d, const FaceRows& rows, doub
 
 template <class P, int D>
 void predict_plain(State<D>& s, int block, double dt) {
+  ask_for_next_sums(s, block);
   for_face_rows(
       s, block, [&](const FaceRows& rows, int d) __attribute__((always_inline)) {
         if constexpr (P::water)
