@@ -44,19 +44,19 @@ class Measured:
         for name in sorted(fresh):
             self.rows[name] = fresh[name]
 
-    def run_in_turns(self, patterns):
+    def run_in_turns(self, patterns, turns):
         """The benchmarks of every pattern once in each turn: what is compared is then measured side by side, whatever
         the machine's speed does between turns."""
-        turns = {}
-        for _ in range(self.repetitions):
+        all_turns = {}
+        for _ in range(turns):
             for pattern in patterns:
                 self.run(pattern, 1)
                 for name, row in self.rows.items():
                     if name.startswith(pattern):
-                        kept = turns.setdefault(name, collections.defaultdict(list))
+                        kept = all_turns.setdefault(name, collections.defaultdict(list))
                         for counter, values in row.items():
                             kept[counter] += values
-        self.rows.update(turns)
+        self.rows.update(all_turns)
 
     def add(self, name, figures):
         """One more repetition of something that is measured elsewhere."""
