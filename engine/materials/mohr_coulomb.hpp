@@ -55,7 +55,7 @@ struct EdgeReturn {
 /// trial nor on the cohesion.
 struct FaceReturn {
   std::array<double, 3> drop{};       ///< Pa, of the stress per plastic multiplier
-  double compliance = 0;              ///< 1/Pa, plastic multiplier per excess over yield; 0: unknown
+  double compliance = 0;              ///< 1/Pa, plastic multiplier per excess over yield
   double shear = 0;                   ///< –, √(2/3 e:e) per plastic multiplier
   EdgeReturn compression, extension;  ///< with σ2–σ3, where σ1 = σ2; with σ1–σ2, where σ2 = σ3
 

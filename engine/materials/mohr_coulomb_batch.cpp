@@ -15,8 +15,9 @@ struct Returned {
   BatchLanes shear;   ///< –, √(2/3 e:e) of the plastic strain's deviator e
 };
 
+/// a where the mask is true, else b.
 template <class Mask>
-QUICKSAND_INLINE Returned where(const Mask& mask, const Returned& a, const Returned& b) {
+QUICKSAND_INLINE Returned either(const Mask& mask, const Returned& a, const Returned& b) {
   const auto chosen = [&](int i) __attribute__((always_inline)) {
     return where(mask, a.stress[i], b.stress[i]);
   };
@@ -48,7 +49,7 @@ QUICKSAND_INLINE Returned onto_edge(const FaceReturn& face, const EdgeReturn& ed
 
 QUICKSAND_INLINE Returned onto_apex(const Elastic& elastic, const Principals& trial, const BatchLanes& apex) {
   const auto& [s1, s2, s3] = trial;
-  const BatchLanes a = s1 - s2, b = s2 - s3, c = s1 - s3;  // e:e = (a² + b² + c²)/3
+  const BatchLanes a = s1 - s2, b = s2 - s3, c = s1 - s3;  // s:s = (a² + b² + c²)/3, e = s/2G
   return {{apex, apex, apex}, square_root(a * a + b * b + c * c) * (std::sqrt(2.0) / (6 * elastic.shear))};
 }
 
@@ -67,11 +68,11 @@ QUICKSAND_INLINE Returned onto_pyramid(const MohrCoulombLaw& law, const Principa
                      onto_edge(law.face, law.face.compression, trial, f, excess(peak, s2, s3, cohesion)),
                  extension =
                      onto_edge(law.face, law.face.extension, trial, f, excess(peak, s1, s2, cohesion));
-  r = where(unsorted(r.stress, tolerance), where(r.stress[1] > r.stress[0], compression, extension), r);
+  r = either(unsorted(r.stress, tolerance), either(r.stress[1] > r.stress[0], compression, extension), r);
   if (peak.sin_phi <= 0) return r;
   const BatchLanes apex = cohesion * (peak.cos_phi / peak.sin_phi);
-  return where(unsorted(r.stress, tolerance) | (r.stress[2] > apex + tolerance),
-               onto_apex(law.elastic, trial, apex), r);
+  return either(unsorted(r.stress, tolerance) | (r.stress[2] > apex + tolerance),
+                onto_apex(law.elastic, trial, apex), r);
 }
 
 /// return_map in the chosen lanes; those that yield are added to `done`.
@@ -103,15 +104,15 @@ int MohrCoulombLaw::update_batch(SoilState<D, BatchLanes>& state, const Strain<D
   const auto& [s1, s2, s3] = principal.value;
   const BatchLanes gamma = face.compliance * excess(peak, s1, s3, c);
   Returned r = onto_face(face, principal.value, gamma);
-  auto returned = yields & (gamma > 0) & (r.stress[0] >= r.stress[1]) & (r.stress[1] >= r.stress[2]) &
-                  (r.stress[0] <= peak.tension);
+  const BatchLanes scale = where(s1 < zero, -s1, s1) + where(s3 < zero, -s3, s3) + c;
+  const auto plastic = yields & (gamma > face.compliance * 1e-14 * scale);
+  auto returned =
+      plastic & (r.stress[0] >= r.stress[1]) & (r.stress[1] >= r.stress[2]) & (r.stress[0] <= peak.tension);
   if (peak.sin_phi > 0) returned = returned & (r.stress[2] * peak.sin_phi <= peak.cos_phi * c);
 
   if (const unsigned left = bits_of(yields) & ~bits_of(returned) & first_bits(count)) {
-    const BatchLanes scale = where(s1 < zero, -s1, s1) + where(s3 < zero, -s3, s3) + c;
-    const auto plastic = yields & (gamma > face.compliance * 1e-14 * scale);
-    r = where(plastic, onto_pyramid(*this, principal.value, c, 1e-12 * scale, r),
-              Returned{principal.value, zero});
+    r = either(plastic, onto_pyramid(*this, principal.value, c, 1e-12 * scale, r),
+               Returned{principal.value, zero});
     Kept<> done = where(plastic, zero + 1.0, zero);
     if (const unsigned cut = bits_of(r.stress[0] > peak.tension) & left)
       return_alone(*this, principal.value, c, cut, r, done);

@@ -32,14 +32,14 @@ template <bool to_write = false, class T>
 QUICKSAND_INLINE void ask_for(const Field<T>& field, const FaceRows& rows) {
   constexpr std::ptrdiff_t size = sizeof(T), line = 64;
   for (const int first : {rows.first, rows.second})
-    for (std::ptrdiff_t at = first * size; at < (first + 4) * size; at += line)
+    for (std::ptrdiff_t at = first * size / line * line; at < (first + 4) * size; at += line)
       __builtin_prefetch(reinterpret_cast<const char*>(field.data()) + at, to_write);
 }
 /// The sums of the block after this one, mostly the next to be worked on: blocks are narrow, and the
 /// processor does not foresee by itself where rows go on.
 template <int D>
 QUICKSAND_INLINE void ask_for_next_sums(const State<D>& s, int block) {
-  if (block + 1 == s.blocks.count()) return;
+  if (block + 1 == s.blocks.count() || !s.plain[block + 1]) return;
   for_face_rows(
       s, block + 1, [&](const FaceRows& rows, int d) __attribute__((always_inline)) {
         s.sums[d].each([&](const auto& field) __attribute__((always_inline)) { ask_for(field, rows); });
