@@ -44,19 +44,18 @@ class Measured:
         for name in sorted(fresh):
             self.rows[name] = fresh[name]
 
-    def run_in_turns(self, patterns, turns):
-        """The benchmarks of every pattern once in each turn: what is compared is then measured side by side, whatever
-        the machine's speed does between turns."""
-        all_turns = {}
+    def in_turns(self, patterns, turns):
+        """The benchmarks of every pattern once in each turn, as another Measured: what is compared is then measured
+        side by side, whatever the machine's speed does between turns. Rows that are not known yet are taken over."""
+        side_by_side = Measured(self.programs, turns, self.point_steps)
         for _ in range(turns):
             for pattern in patterns:
-                self.run(pattern, 1)
-                for name, row in self.rows.items():
-                    if name.startswith(pattern):
-                        kept = all_turns.setdefault(name, collections.defaultdict(list))
-                        for counter, values in row.items():
-                            kept[counter] += values
-        self.rows.update(all_turns)
+                one = Measured(self.programs, 1, self.point_steps)
+                one.run(pattern)
+                for name, row in one.rows.items():
+                    side_by_side.add(name, {counter: value for counter, [value] in row.items()})
+        self.rows = side_by_side.rows | self.rows
+        return side_by_side
 
     def add(self, name, figures):
         """One more repetition of something that is measured elsewhere."""
