@@ -1,6 +1,9 @@
 // The law for several points at once: return_map in lanes. What is cut by a largest tension goes through
 // return_map one by one.
 
+#include <array>
+#include <cmath>
+
 #include "engine/materials/mohr_coulomb.hpp"
 #include "engine/materials/principal_lanes.hpp"
 
@@ -75,7 +78,7 @@ QUICKSAND_INLINE Returned onto_pyramid(const MohrCoulombLaw& law, const Principa
                 onto_apex(law.elastic, trial, apex), r);
 }
 
-/// return_map in the chosen lanes; those that yield are added to `done`.
+/// return_map in the chosen lanes; `done` becomes 1 where it yields, else 0.
 void return_alone(const MohrCoulombLaw& law, const Principals& trial, const BatchLanes& cohesion,
                   unsigned chosen, Returned& r, Kept<>& done) {
   Kept<> s1 = r.stress[0], s2 = r.stress[1], s3 = r.stress[2], shear = r.shear;
@@ -110,7 +113,9 @@ int MohrCoulombLaw::update_batch(SoilState<D, BatchLanes>& state, const Strain<D
       plastic & (r.stress[0] >= r.stress[1]) & (r.stress[1] >= r.stress[2]) & (r.stress[0] <= peak.tension);
   if (peak.sin_phi > 0) returned = returned & (r.stress[2] * peak.sin_phi <= peak.cos_phi * c);
 
-  if (const unsigned left = bits_of(yields) & ~bits_of(returned) & first_bits(count)) {
+  // Lanes that yield by the bounds of their principal stresses alone stay as they are.
+  const auto beyond = plastic | (s1 > peak.tension);
+  if (const unsigned left = bits_of(beyond) & ~bits_of(returned) & first_bits(count)) {
     r = either(plastic, onto_pyramid(*this, principal.value, c, 1e-12 * scale, r),
                Returned{principal.value, zero});
     Kept<> done = where(plastic, zero + 1.0, zero);
